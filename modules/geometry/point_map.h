@@ -27,6 +27,7 @@ struct MapPoint {
 struct Sighting {
   int point = -1;                                    ///< index into PointMap::points
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();   ///< px, as detected (distorted)
+  double sigma_px = 1.0;                             ///< of each coordinate
 };
 
 /// An image whose sightings support the map.
@@ -35,6 +36,7 @@ struct Keyframe {
   Timestamp time{};
   std::string image;  ///< file name in its source, or empty
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  Matrix6d covariance = Matrix6d::Zero();  ///< of the right perturbation (translation, rotation); m, rad
   std::vector<Sighting> sightings;
 };
 
