@@ -7,19 +7,23 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "core/errors.h"
 #include "core/progress.h"
 
 namespace alidade {
 
-/// What every verb is given: how to tell the user, when to stop, and what the user typed.
+/// What every verb is given: where results go, how to tell the user, when to stop, and what the user typed.
 struct RunContext {
-  ProgressSink progress;                          ///< drawn as a bar, log lines or JSON, as the user chose
-  std::function<void(const std::string&)> tell;   ///< one line of result on stdout (silent with --quiet)
-  std::function<void(const std::string&)> warn;   ///< one line on stderr, "warning: " in front
-  std::stop_token stop;                           ///< set by Ctrl-C and SIGTERM: keep what there is, return Interrupted
-  unsigned seed = 1;                              ///< --seed
-  std::vector<std::string> arguments;             ///< argv, for the report
+  std::filesystem::path output;                  ///< -o; empty where the verb does not need it and none was given
+  unsigned seed = 1;                             ///< --seed
+  std::stop_token stop;                          ///< set by Ctrl-C and SIGTERM: keep what there is, return Interrupted
+  ProgressSink progress;                         ///< drawn as a bar, log lines or JSON, as the user chose
+  std::function<void(const std::string&)> tell;  ///< a line of result on stdout (none with --quiet)
+  std::function<void(const std::string&)> warn;  ///< one line on stderr, "warning: " in front
+  std::function<void(const nlohmann::json&)> publish;  ///< the result as one JSON line on stdout (only with --json)
+  std::vector<std::string> arguments;                  ///< argv, for the report
 };
 
 }  // namespace alidade

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/commands/verbs.h"
+
+namespace alidade {
+
+std::vector<Verb> all_verbs() {
+  return {};
+}
+
+}  // namespace alidade

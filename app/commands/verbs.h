@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "app/command.h"
+
+namespace alidade {
+
+/// Every verb of the program, in the order of --help. A new verb: app/commands/NAME.cpp with its NAME_verb(), declared
+/// here and listed in verbs.cpp.
+std::vector<Verb> all_verbs();
+
+}  // namespace alidade

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/result_directory.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+#include <vector>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "app/version.h"
+#include "core/errors.h"
+
+namespace alidade {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kPart = ".part";
+constexpr const char* kSummary = "summary.json";
+
+// False for names that would lead out of the directory.
+bool is_plain_name(const std::string& name) {
+  return !name.empty() && name != "." && name != ".." && fs::path(name).filename() == name;
+}
+
+// Names of the top-level files of an earlier result of ours; empty where the directory is none.
+std::vector<std::string> files_of_result(const fs::path& directory) {
+  std::ifstream file(directory / kSummary);
+  const nlohmann::json summary = nlohmann::json::parse(file, nullptr, /*allow_exceptions=*/false);
+  if (!summary.is_object() || summary.value("program", nlohmann::json()) != "alidade") return {};
+  std::vector<std::string> names;
+  for (const auto& name : summary.value("files", nlohmann::json::array()))
+    if (name.is_string() && is_plain_name(name)) names.push_back(name);
+  return names;
+}
+
+bool holds_only_part(const fs::path& directory) {
+  return std::all_of(fs::directory_iterator(directory), {},
+                     [](const fs::directory_entry& entry) { return entry.path().filename() == kPart; });
+}
+
+void refuse_foreign(const fs::path& out) {
+  const std::string remedy = "give -o a new or empty directory, or one with an earlier result of alidade";
+  if (!fs::is_directory(out)) throw InputError(out.string(), 0, "is not a directory", remedy);
+  if (!holds_only_part(out) && files_of_result(out).empty())
+    throw InputError(out.string(), 0, "holds files that are not an alidade result", remedy);
+}
+
+[[noreturn]] void refused(const fs::path& path, const std::string& operation, int error) {
+  const std::string remedy = error == ENOSPC || error == EDQUOT  ? "free some space or give -o another disk"
+                             : error == EACCES || error == EROFS ? "give -o a directory that you may write"
+                                                                 : "";
+  throw DeviceError(path.string(), operation, std::strerror(error), remedy);
+}
+
+void write_all(const fs::path& path, std::string_view text) {
+  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (file < 0) refused(path, "create", errno);
+  int error = 0;
+  while (!text.empty() && error == 0) {
+    const ssize_t written = write(file, text.data(), text.size());
+    if (written >= 0) text.remove_prefix(static_cast<std::size_t>(written));
+    if (written < 0 && errno != EINTR) error = errno;
+  }
+  if (error == 0 && fsync(file) != 0 && errno != EINVAL) error = errno;
+  if (close(file) != 0 && error == 0) error = errno;
+  if (error != 0) refused(path, "write", error);
+}
+
+}  // namespace
+
+ResultDirectory::ResultDirectory(fs::path out, std::string verb)
+    : out_(std::move(out)), part_(out_ / kPart), verb_(std::move(verb)) {
+  try {
+    created_ = !fs::exists(out_);
+    if (created_) fs::create_directories(out_);
+    refuse_foreign(out_);
+    fs::remove_all(part_);  // of a run that was killed
+    fs::create_directory(part_);
+  } catch (const fs::filesystem_error& error) {
+    refused(out_, "create the result directory", error.code().value());
+  }
+}
+
+ResultDirectory::~ResultDirectory() {
+  if (committed_) return;
+  std::error_code ignored;
+  fs::remove_all(part_, ignored);
+  if (created_) fs::remove(out_, ignored);
+}
+
+fs::path ResultDirectory::path(const std::string& name) const {
+  const fs::path path = part_ / name;
+  std::error_code error;
+  fs::create_directories(path.parent_path(), error);
+  if (error) refused(path.parent_path(), "create", error.value());
+  return path;
+}
+
+void ResultDirectory::write_text(const std::string& name, std::string_view text) const {
+  write_all(path(name), text);
+}
+
+void ResultDirectory::commit(nlohmann::json summary) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(part_))
+    if (entry.path().filename() != kSummary) names.push_back(entry.path().filename());
+  std::sort(names.begin(), names.end());
+  names.push_back(kSummary);
+  summary["program"] = "alidade";
+  summary["version"] = kVersion;
+  summary["verb"] = verb_;
+  summary["files"] = names;
+  write_text(kSummary, summary.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  try {
+    const std::vector<std::string> old_names = files_of_result(out_);
+    fs::remove(out_ / kSummary);  // first out, last in
+    for (const std::string& name : old_names) fs::remove_all(out_ / name);
+    for (const std::string& name : names) fs::rename(part_ / name, out_ / name);
+    fs::remove(part_);
+  } catch (const fs::filesystem_error& error) {
+    refused(out_, "move the results into place", error.code().value());
+  }
+  committed_ = true;
+}
+
+}  // namespace alidade
