@@ -11,4 +11,6 @@ namespace alidade {
 /// here and listed in verbs.cpp.
 std::vector<Verb> all_verbs();
 
+Verb evaluate_verb();
+
 }  // namespace alidade
