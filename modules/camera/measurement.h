@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+namespace alidade {
+
+/// A map point seen at a pixel: two planes through the camera's centre, and what is known of the point itself.
+struct PointObservation {
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();             ///< px, as detected (distorted)
+  double sigma_px = 1.0;                                       ///< of each coordinate
+  Eigen::Vector3d p_world = Eigen::Vector3d::Zero();           ///< m
+  Eigen::Matrix3d covariance_world = Eigen::Matrix3d::Zero();  ///< of p_world, m²
+};
+
+}  // namespace alidade

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "camera/camera.h"
+#include "camera/measurement.h"
+#include "geometry/pose.h"
+
+namespace alidade {
+
+/// What is believed of a camera's pose before its image is looked at.
+struct PosePrior {
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  Matrix6d information = Matrix6d::Zero();  ///< inverse covariance of the right perturbation; zero: nothing is known
+};
+
+struct PoseUpdateOptions {
+  double gate_chi2 = 13.8;        ///< a residual beyond it (2 degrees of freedom, 99.9 %) is an outlier
+  double loosest_gate_px = 60.0;  ///< however uncertain the prediction, a match farther off is not considered
+  int max_iterations = 12;        ///< Gauss–Newton steps of the robust phase; 5 are usual
+  int least_inliers = 6;          ///< fewer leave the pose unanswered
+  bool map_covariance = true;     ///< R_i = σ²I + J_X P_X J_Xᵀ; false: R_i = σ²I, as in the paper
+};
+
+struct PoseUpdate {
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  Matrix6d covariance = Matrix6d::Zero();  ///< of the right perturbation, m and rad
+  std::vector<bool> is_inlier;             ///< one per observation
+  int inlier_count = 0;
+  double chi2_per_dof = 0.0;  ///< of the inliers' whitened residuals; 1 where sigma_px is right
+};
+
+/// The maximum a posteriori pose from a prior and sightings of map points: iterated update in information form, O(n) in
+/// the number of observations. Observations outside the gate about the prior are left out; the rest pass a redescending
+/// weight (Geman–McClure, graduated) before the inliers alone give pose and covariance. Empty where fewer than
+/// least_inliers remain or the pose is not determined.
+/// Source: camera-tracker paper eqs. 8–13 in error-state, information form; R_i as in options.
+std::optional<PoseUpdate> update_pose(const Camera& camera, const PosePrior& prior,
+                                      std::span<const PointObservation> observations,
+                                      const PoseUpdateOptions& options = {});
+
+/// The measurement noise of an observation, R_i (px²), for a camera at T_world_camera; empty where it is not visible.
+std::optional<Eigen::Matrix2d> measurement_noise(const Camera& camera, const Eigen::Isometry3d& T_world_camera,
+                                                 const PointObservation& observation, bool map_covariance);
+
+}  // namespace alidade

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracking/pose_method.h"
+
+#include <Eigen/LU>
+#include <vector>
+
+#include "reconstruction/resection.h"
+#include "tracking/paper_filter.h"
+
+namespace alidade {
+namespace {
+
+PosePrior prior_of(const CameraState& predicted, bool use_prior) {
+  PosePrior prior;
+  prior.T_world_camera = predicted.T_world_camera;
+  if (use_prior) prior.information = predicted.covariance.topLeftCorner<6, 6>().inverse();
+  return prior;
+}
+
+std::vector<PointObservation> inliers_of(std::span<const PointObservation> observations, const PoseUpdate& update) {
+  std::vector<PointObservation> inliers;
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    if (update.is_inlier[i]) inliers.push_back(observations[i]);
+  }
+  return inliers;
+}
+
+std::optional<PoseUpdate> from_frame_alone(PnpMethod method, const Camera& camera,
+                                           std::span<const PointObservation> inliers, PoseUpdate update) {
+  const auto T = solve_pnp(camera, inliers, method);
+  if (!T) return std::nullopt;
+  const auto covariance = resection_covariance(camera, *T, inliers);
+  if (!covariance) return std::nullopt;
+  update.T_world_camera = *T;
+  update.covariance = *covariance;
+  return update;
+}
+
+std::optional<PoseUpdate> from_paper_filter(const Camera& camera, const CameraState& predicted,
+                                            std::span<const PointObservation> inliers, PoseUpdate update) {
+  const CameraState state = update_paper_filter(camera, predicted, inliers);
+  if (!state.T_world_camera.matrix().allFinite()) return std::nullopt;
+  update.T_world_camera = state.T_world_camera;
+  update.covariance = state.covariance.topLeftCorner<6, 6>();
+  return update;
+}
+
+}  // namespace
+
+std::optional<PoseUpdate> estimate_pose(PoseMethod method, const Camera& camera, const CameraState& predicted,
+                                        std::span<const PointObservation> observations,
+                                        const PoseUpdateOptions& options, bool use_prior) {
+  auto update = update_pose(camera, prior_of(predicted, use_prior), observations, options);
+  if (!update || method == PoseMethod::Ekf) return update;
+  const std::vector<PointObservation> inliers = inliers_of(observations, *update);
+  switch (method) {
+    case PoseMethod::EkfPaper:
+      return from_paper_filter(camera, predicted, inliers, std::move(*update));
+    case PoseMethod::Epnp:
+      return from_frame_alone(PnpMethod::Epnp, camera, inliers, std::move(*update));
+    case PoseMethod::EpnpLm:
+      return from_frame_alone(PnpMethod::EpnpLm, camera, inliers, std::move(*update));
+    case PoseMethod::Sqpnp:
+      return from_frame_alone(PnpMethod::Sqpnp, camera, inliers, std::move(*update));
+    case PoseMethod::Ekf:
+      break;
+  }
+  return update;
+}
+
+}  // namespace alidade

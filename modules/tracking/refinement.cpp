@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracking/refinement.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+#include "reconstruction/bundle_covariance.h"
+
+namespace alidade {
+namespace {
+
+std::vector<int> all_keyframes(const PointMap& map) {
+  std::vector<int> all(map.keyframes.size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+}  // namespace
+
+RefinedTrack refine_globally(const Camera& camera, LiveMap live, std::vector<FrameReport> reports,
+                             const CameraTrackerOptions& options, int anchored) {
+  RefinedTrack refined;
+  RefinementSummary& summary = refined.summary;
+  summary.rms_px_before = reprojection_rms_px(camera, live.map);
+  BundleOptions bundle = global_bundle_options(live.map, anchored);
+  bundle.max_iterations = 25;
+  for (double radius_px : {5.0, 3.0}) {
+    auto completion = complete_sightings(camera, std::move(live), living_points(live.map),
+                                         all_keyframes(live.map), radius_px);
+    live = std::move(completion.live);
+    summary.sightings_added += completion.added;
+    const BundleResult result = adjust_bundle(camera, std::move(live.map), bundle);
+    summary.iterations += result.iterations;
+    summary.seconds += result.seconds;
+    SightingCut cut = remove_outlying_sightings(camera, result.map, 4.0);
+    summary.sightings_removed += cut.removed;
+    live.map = std::move(cut.map);
+    release_removed_sightings(live);
+  }
+  BundleResult last = adjust_bundle(camera, std::move(live.map), bundle);
+  summary.iterations += last.iterations;
+  summary.seconds += last.seconds;
+  summary.sightings = last.sighting_count;
+  live.map = with_covariances(camera, std::move(last.map), bundle);
+  summary.rms_px_after = reprojection_rms_px(camera, live.map);
+
+  bundle.refine_focal = true;
+  const BundleResult focal = adjust_bundle(camera, live.map, bundle);
+  summary.focal_factor = focal.focal_factor;
+  summary.focal_factor_sigma = focal.focal_factor_sigma;
+
+  refined.reports = relocate_frames(camera, live.map, std::move(reports), options);
+  refined.live = std::move(live);
+  return refined;
+}
+
+std::vector<FrameReport> relocate_frames(const Camera& camera, const PointMap& map, std::vector<FrameReport> reports,
+                                         const CameraTrackerOptions& options) {
+  std::map<int, const Keyframe*> keyframe_of_frame;
+  for (const Keyframe& keyframe : map.keyframes) keyframe_of_frame[keyframe.frame] = &keyframe;
+  for (FrameReport& report : reports) {
+    if (const auto found = keyframe_of_frame.find(report.index); found != keyframe_of_frame.end()) {
+      report.T_world_camera = found->second->T_world_camera;
+      report.covariance = found->second->covariance;
+      continue;
+    }
+    if (report.state != FrameState::Tracked) continue;
+    std::vector<PointObservation> observations;
+    for (const FrameSighting& s : report.sightings) {
+      if (!s.is_inlier) continue;
+      const MapPoint& point = map.points[static_cast<std::size_t>(s.point)];
+      observations.push_back({s.pixel, report.sigma_px, point.p_world, point.covariance_world});
+    }
+    PosePrior prior;
+    prior.T_world_camera = report.T_world_camera;
+    const auto update = update_pose(camera, prior, observations, options.update);
+    if (!update) continue;
+    report.T_world_camera = update->T_world_camera;
+    report.covariance = update->covariance;
+    report.chi2_per_dof = update->chi2_per_dof;
+  }
+  return reports;
+}
+
+}  // namespace alidade

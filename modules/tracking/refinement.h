@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "camera/camera.h"
+#include "core/progress.h"
+#include "tracking/camera_tracker.h"
+
+namespace alidade {
+
+/// What global refinement has done, for the report.
+struct RefinementSummary {
+  double rms_px_before = 0;
+  double rms_px_after = 0;
+  int sightings = 0;
+  int sightings_added = 0;
+  int sightings_removed = 0;
+  int iterations = 0;
+  double seconds = 0;
+  double focal_factor = 1.0;        ///< the factor on the focal length that would fit best
+  double focal_factor_sigma = 0.0;
+};
+
+struct RefinedTrack {
+  LiveMap live;
+  std::vector<FrameReport> reports;
+  RefinementSummary summary;
+};
+
+/// Bundle adjustment of all keyframes and points after a recording has been tracked: sightings that were missed are
+/// added, outlying ones removed, covariances filled in; then every other frame's pose is estimated again in the refined
+/// map from the sightings that its report holds. `anchored` keyframes stay fixed.
+RefinedTrack refine_globally(const Camera& camera, LiveMap live, std::vector<FrameReport> reports,
+                             const CameraTrackerOptions& options, int anchored);
+
+/// Estimates the poses of the frames that are no keyframes again, in order, in a map that has changed.
+std::vector<FrameReport> relocate_frames(const Camera& camera, const PointMap& map, std::vector<FrameReport> reports,
+                                         const CameraTrackerOptions& options);
+
+}  // namespace alidade
