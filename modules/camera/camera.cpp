@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "camera/camera.h"
 
-#include <fmt/format.h>
+#include <cmath>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <cmath>
+#include <fmt/format.h>
 
 namespace alidade {
 namespace {
@@ -46,7 +46,8 @@ std::optional<std::string> find_fault(const Camera& camera) {
   if (c.width <= 0 || c.height <= 0) return fmt::format("image size must be > 0 px, got {}x{}", c.width, c.height);
   if (!(c.fx > 0) || !std::isfinite(c.fx)) return fmt::format("fx must be > 0 px, got {}", c.fx);
   if (!(c.fy > 0) || !std::isfinite(c.fy)) return fmt::format("fy must be > 0 px, got {}", c.fy);
-  if (!(c.cx > -0.5 && c.cx < c.width)) return fmt::format("cx must lie in the image (0..{} px), got {}", c.width, c.cx);
+  if (!(c.cx > -0.5 && c.cx < c.width))
+    return fmt::format("cx must lie in the image (0..{} px), got {}", c.width, c.cx);
   if (!(c.cy > -0.5 && c.cy < c.height)) {
     return fmt::format("cy must lie in the image (0..{} px), got {}", c.height, c.cy);
   }

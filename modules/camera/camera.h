@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
 #include <string>
+
+#include <Eigen/Core>
 
 namespace alidade {
 
@@ -16,9 +17,9 @@ struct BrownConrady {
 
 /// Intrinsics of a pinhole camera: x right, y down, z forward; pixel (0, 0) is the centre of the top-left pixel.
 struct Camera {
-  int width = 0, height = 0;       ///< px
-  double fx = 0, fy = 0;           ///< px
-  double cx = 0, cy = 0;           ///< px
+  int width = 0, height = 0;  ///< px
+  double fx = 0, fy = 0;      ///< px
+  double cx = 0, cy = 0;      ///< px
   BrownConrady distortion;
   bool operator==(const Camera&) const = default;
 };
@@ -28,8 +29,8 @@ std::optional<std::string> find_fault(const Camera& camera);
 
 /// A pixel and how it moves with the point that it shows.
 struct Projection {
-  Eigen::Vector2d pixel;                         ///< px
-  Eigen::Matrix<double, 2, 3> J_pixel_point;     ///< ∂pixel/∂p_camera, px/m
+  Eigen::Vector2d pixel;                      ///< px
+  Eigen::Matrix<double, 2, 3> J_pixel_point;  ///< ∂pixel/∂p_camera, px/m
 };
 
 /// The pixel of a point in camera coordinates (m) and its Jacobian. Empty where the point is not in front of the

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/time.h"
 
-#include <fmt/format.h>
-
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+
+#include <fmt/format.h>
 
 namespace alidade {
 namespace {
@@ -29,7 +29,9 @@ std::optional<Timestamp> parse_floating(std::string_view text) {
 
 }  // namespace
 
-double to_seconds(RecordingClock::duration duration) { return std::chrono::duration<double>(duration).count(); }
+double to_seconds(RecordingClock::duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
 
 RecordingClock::duration from_seconds(double seconds) {
   return RecordingClock::duration(std::llround(seconds * static_cast<double>(kNanosecondsPerSecond)));

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "geometry/alignment.h"
 
-#include <Eigen/SVD>
 #include <stdexcept>
+
+#include <Eigen/SVD>
 
 namespace alidade {
 namespace {

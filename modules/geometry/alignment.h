@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <optional>
 #include <span>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "geometry/trajectory.h"
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/time.h"
 #include "geometry/pose.h"
@@ -25,9 +26,9 @@ struct MapPoint {
 
 /// One keyframe's sighting of a map point.
 struct Sighting {
-  int point = -1;                                    ///< index into PointMap::points
-  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();   ///< px, as detected (distorted)
-  double sigma_px = 1.0;                             ///< of each coordinate
+  int point = -1;                                   ///< index into PointMap::points
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< px, as detected (distorted)
+  double sigma_px = 1.0;                            ///< of each coordinate
 };
 
 /// An image whose sightings support the map.

@@ -26,6 +26,8 @@ Eigen::Isometry3d interpolate(const Eigen::Isometry3d& a, const Eigen::Isometry3
   return T;
 }
 
-double rotation_angle(const Eigen::Matrix3d& R) { return log_so3(R).norm(); }
+double rotation_angle(const Eigen::Matrix3d& R) {
+  return log_so3(R).norm();
+}
 
 }  // namespace alidade

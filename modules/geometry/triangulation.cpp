@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "geometry/triangulation.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+
+#include <Eigen/Cholesky>
 
 namespace alidade {
 namespace {
