@@ -7,6 +7,7 @@
 
 #include "camera/camera.h"
 #include "features/flow.h"
+#include "features/matching.h"
 #include "geometry/trajectory.h"
 #include "reconstruction/two_view.h"
 #include "tracking/frame.h"
