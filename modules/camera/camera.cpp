@@ -29,14 +29,18 @@ Distorted distort(const BrownConrady& k, const Eigen::Vector2d& xy) {
   return d;
 }
 
-// Beyond the first radius where the radial polynomial stops growing, two directions share a pixel.
+// Beyond the first radius where the radial polynomial stops growing, two directions share a pixel. Its slope
+// 1 + a s + b s² + c s³ (s = r²) is least at the end of [0, r2] or where 3c s² + 2b s + a = 0.
 bool folds_back(const BrownConrady& k, double r2) {
-  constexpr int kSteps = 8;
-  for (int i = 1; i <= kSteps; ++i) {
-    const double s = r2 * i / kSteps;
-    if (1.0 + s * (3.0 * k.k1 + s * (5.0 * k.k2 + s * 7.0 * k.k3)) <= 0) return true;
-  }
-  return false;
+  const double a = 3.0 * k.k1, b = 5.0 * k.k2, c = 7.0 * k.k3;
+  const auto grows_at = [&](double s) { return 1.0 + s * (a + s * (b + s * c)) > 0; };
+  if (!grows_at(r2)) return true;
+  const double discriminant = b * b - 3.0 * a * c;
+  if (discriminant < 0) return false;
+  // The minimum of the cubic, in the form that does not cancel; c = 0 leaves a parabola.
+  const double root = std::sqrt(discriminant);
+  const double least = b + root > 0 ? -a / (b + root) : (c != 0 ? (root - b) / (3.0 * c) : 0.0);
+  return least > 0 && least < r2 && !grows_at(least);
 }
 
 }  // namespace

@@ -6,7 +6,14 @@
 namespace alidade {
 namespace {
 
-constexpr double kSmallAngle = 1e-4;  // rad; below it the Taylor terms left out are under 1e-17
+constexpr double kSmallAngle = 1e-4;  // rad; below it the Taylor terms left out are under 1e-20
+
+// (1 - cos angle) / angle², without the cancellation.
+double one_minus_cosine_over_square(double angle) {
+  if (angle < kSmallAngle) return 0.5 - angle * angle / 24.0;
+  const double half_sine = std::sin(0.5 * angle);
+  return 2.0 * half_sine * half_sine / (angle * angle);
+}
 
 }  // namespace
 
@@ -19,10 +26,8 @@ Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
 Eigen::Matrix3d exp_so3(const Eigen::Vector3d& phi) {
   const double angle = phi.norm();
   const Eigen::Matrix3d S = skew(phi);
-  const bool small = angle < kSmallAngle;
-  const double a = small ? 1.0 - angle * angle / 6.0 : std::sin(angle) / angle;
-  const double half_sine = std::sin(0.5 * angle);
-  const double b = small ? 0.5 - angle * angle / 24.0 : 2.0 * half_sine * half_sine / (angle * angle);
+  const double a = angle < kSmallAngle ? 1.0 - angle * angle / 6.0 : std::sin(angle) / angle;
+  const double b = one_minus_cosine_over_square(angle);
   return Eigen::Matrix3d::Identity() + a * S + b * S * S;
 }
 
@@ -38,10 +43,9 @@ Eigen::Vector3d log_so3(const Eigen::Matrix3d& R) {
 Eigen::Matrix3d right_jacobian_so3(const Eigen::Vector3d& phi) {
   const double angle = phi.norm();
   const Eigen::Matrix3d S = skew(phi);
-  if (angle < kSmallAngle) return Eigen::Matrix3d::Identity() - 0.5 * S + S * S / 6.0;
-  const double squared = angle * angle;
-  return Eigen::Matrix3d::Identity() - (1.0 - std::cos(angle)) / squared * S +
-         (angle - std::sin(angle)) / (squared * angle) * S * S;
+  const double cube = angle * angle * angle;
+  const double c = angle < kSmallAngle ? 1.0 / 6.0 : (angle - std::sin(angle)) / cube;
+  return Eigen::Matrix3d::Identity() - one_minus_cosine_over_square(angle) * S + c * S * S;
 }
 
 }  // namespace alidade

@@ -13,7 +13,7 @@ namespace {
 
 void require_valid(std::span<const Ray> rays) {
   for (const Ray& ray : rays) {
-    if (std::abs(ray.direction_world.norm() - 1.0) > 1e-6) {
+    if (!(std::abs(ray.direction_world.norm() - 1.0) <= 1e-6)) {
       throw std::invalid_argument("intersect_rays: a direction is not of unit length");
     }
     if (!(ray.sigma_rad > 0)) throw std::invalid_argument("intersect_rays: sigma_rad must be > 0");
@@ -26,7 +26,8 @@ double largest_angle(std::span<const Ray> rays) {
     for (std::size_t j = i + 1; j < rays.size(); ++j) {
       const Eigen::Vector3d& a = rays[i].direction_world;
       const Eigen::Vector3d& b = rays[j].direction_world;
-      largest = std::max(largest, std::atan2(a.cross(b).norm(), a.dot(b)));
+      // Two rays that look at each other along one line fix no point on it: the angle is that of the lines.
+      largest = std::max(largest, std::atan2(a.cross(b).norm(), std::abs(a.dot(b))));
     }
   }
   return largest;

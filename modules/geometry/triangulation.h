@@ -19,12 +19,13 @@ struct Ray {
 struct Intersection {
   Eigen::Vector3d p_world = Eigen::Vector3d::Zero();
   Eigen::Matrix3d covariance_world = Eigen::Matrix3d::Zero();  ///< m²
-  double largest_angle_rad = 0.0;                              ///< between any two of the rays
+  double largest_angle_rad = 0.0;                              ///< between the lines of any two rays, [0, π/2]
 };
 
-/// The point with the least weighted squared angular distance to all rays (Gauss–Newton from the midpoint of closest
-/// approach), and its covariance from the rays' angular noise. Empty below two rays, where no two of them differ by
-/// `least_angle_rad`, or where the point lies behind a ray's origin.
+/// The point with the least squared distance across all rays, each distance weighed by its noise at the point's range
+/// (to first order in the noise the most probable point), and its covariance from the rays' angular noise. Empty below
+/// two rays, where the lines of no two of them differ by `least_angle_rad`, or where the point lies behind a ray's
+/// origin.
 /// Throws std::invalid_argument for a direction that is not of unit length or a sigma that is not positive.
 std::optional<Intersection> intersect_rays(std::span<const Ray> rays, double least_angle_rad);
 
