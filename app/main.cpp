@@ -11,6 +11,7 @@
 #include "app/commands/verbs.h"
 #include "app/interruption.h"
 #include "app/progress_display.h"
+#include "app/result_directory.h"
 #include "core/errors.h"
 
 namespace alidade {
@@ -20,6 +21,7 @@ ExitCode run(int argc, char** argv) {
   CommandLine command_line(all_verbs());
   const std::optional<Request> request = command_line.parse(argc, argv);
   if (!request) return ExitCode::Success;
+  if (!request->flags.output.empty()) check_result_directory(request->flags.output);
   const Interruption interruption;  // before any other thread
   ProgressDisplay display(choose_style(request->flags.quiet, request->flags.json), std::cout, std::cerr,
                           terminal_columns());
@@ -33,7 +35,9 @@ ExitCode run(int argc, char** argv) {
       .publish = [&display](const nlohmann::json& result) { display.publish(result); },
       .arguments = {argv, argv + argc},
   };
-  return request->command->run(context);
+  const ExitCode code = request->command->run(context);
+  if (!std::cout.flush()) throw DeviceError("standard output", "write", "not all results could be written", "");
+  return code;
 }
 
 int exit_with(ExitCode code, const std::string& line) {

@@ -45,13 +45,6 @@ bool holds_only_part(const fs::path& directory) {
                      [](const fs::directory_entry& entry) { return entry.path().filename() == kPart; });
 }
 
-void refuse_foreign(const fs::path& out) {
-  const std::string remedy = "give -o a new or empty directory, or one with an earlier result of alidade";
-  if (!fs::is_directory(out)) throw InputError(out.string(), 0, "is not a directory", remedy);
-  if (!holds_only_part(out) && files_of_result(out).empty())
-    throw InputError(out.string(), 0, "holds files that are not an alidade result", remedy);
-}
-
 [[noreturn]] void refused(const fs::path& path, const std::string& operation, int error) {
   const std::string remedy = error == ENOSPC || error == EDQUOT  ? "free some space or give -o another disk"
                              : error == EACCES || error == EROFS ? "give -o a directory that you may write"
@@ -75,12 +68,20 @@ void write_all(const fs::path& path, std::string_view text) {
 
 }  // namespace
 
+void check_result_directory(const fs::path& out) {
+  if (!fs::exists(out)) return;
+  const std::string remedy = "give -o a new or empty directory, or one with an earlier result of alidade";
+  if (!fs::is_directory(out)) throw InputError(out.string(), 0, "is not a directory", remedy);
+  if (!holds_only_part(out) && files_of_result(out).empty())
+    throw InputError(out.string(), 0, "holds files that are not an alidade result", remedy);
+}
+
 ResultDirectory::ResultDirectory(fs::path out, std::string verb)
     : out_(std::move(out)), part_(out_ / kPart), verb_(std::move(verb)) {
   try {
     created_ = !fs::exists(out_);
     if (created_) fs::create_directories(out_);
-    refuse_foreign(out_);
+    check_result_directory(out_);
     fs::remove_all(part_);  // of a run that was killed
     fs::create_directory(part_);
   } catch (const fs::filesystem_error& error) {

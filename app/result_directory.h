@@ -9,13 +9,17 @@
 
 namespace alidade {
 
+/// Refuses (InputError) a path that is not a directory and a directory with files in it that is not an earlier result
+/// of ours. Touches nothing; the shell asks before the work starts.
+void check_result_directory(const std::filesystem::path& out);
+
 /// The directory of a verb's results. Everything is written under OUT/.part and moved into OUT by commit(),
 /// summary.json last: a directory with a summary.json is a complete result. Without commit (an error on the way)
 /// nothing is left behind, and an earlier result in OUT is untouched.
 class ResultDirectory {
  public:
-  /// Creates OUT where needed. Refuses (InputError) a path that is not a directory and a directory with files in it
-  /// that is not an earlier result of ours; DeviceError where the system refuses. `verb` as typed: "track camera".
+  /// Creates OUT where needed. Throws as check_result_directory does, and DeviceError where the system refuses.
+  /// `verb` as typed: "track camera".
   ResultDirectory(std::filesystem::path out, std::string verb);
   ~ResultDirectory();
   ResultDirectory(const ResultDirectory&) = delete;
