@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/camera_file.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/errors.h"
+#include "io/atomic_file.h"
+#include "io/camera_records.h"
+#include "io/text_lines.h"
+
+namespace alidade {
+namespace {
+
+constexpr const char* kFormats =
+    "known are Alidade's and OpenCV's YAML, OpenCV's XML, COLMAP's cameras.txt, 'fx 500 fy 500 cx 320 cy 240', "
+    "Strecha's *.camera and KITTI's calib.txt";
+
+bool is_number(std::string_view word) {
+  return !word.empty() && word.find_first_not_of("0123456789.+-eE") == std::string_view::npos;
+}
+
+bool is_name(std::string_view word) {
+  return !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) { return std::isalnum(c); }) &&
+         std::isalpha(static_cast<unsigned char>(word.front()));
+}
+
+bool is_projection_line(const TextLine& line) {
+  return line.text.starts_with("P0:") || line.text.starts_with("P1:") || line.text.starts_with("P2:") ||
+         line.text.starts_with("P_rect_0");
+}
+
+bool is_yaml(const std::filesystem::path& path, const std::vector<TextLine>& lines) {
+  const auto extension = path.extension();
+  if (extension == ".yaml" || extension == ".yml") return true;
+  const std::string_view first = split_words(lines.front().text).front();
+  return first.starts_with("%YAML") || first == "---" || first.ends_with(':');
+}
+
+CameraRecords parse(const std::filesystem::path& path) {
+  const std::string text = read_bytes(path);
+  const std::vector<TextLine> lines = significant_lines(text);
+  if (lines.empty()) throw InputError(path, 0, "is empty, a camera is wanted", kFormats);
+  if (lines.front().text.starts_with("<?xml") || lines.front().text.starts_with("<opencv_storage")) {
+    return parse_opencv_xml(path, text);
+  }
+  if (std::any_of(lines.begin(), lines.end(), is_projection_line)) return parse_kitti_calibration(path, lines);
+  if (is_yaml(path, lines)) return parse_camera_yaml(path, text);
+  const auto words = split_words(lines.front().text);
+  if (words.size() >= 2 && is_name(words[0]) && is_number(words[1])) return parse_camera_words(path, lines);
+  if (words.size() >= 4 && is_number(words[0]) && std::isupper(static_cast<unsigned char>(words[1].front()))) {
+    return parse_colmap_cameras(path, lines);
+  }
+  if (words.size() == 12 && is_number(words[0])) return parse_kitti_calibration(path, lines);
+  if (words.size() == 3 && is_number(words[0])) return parse_camera_matrix(path, lines);
+  throw InputError(path, lines.front().number, "is not a camera file", kFormats);
+}
+
+// The line of the value that a fault is about: find_fault's sentences start with its name.
+int line_of(const CameraRecord& record, const std::string& fault) {
+  const auto found = record.lines.find(fault.substr(0, fault.find(' ')));
+  return found == record.lines.end() ? record.line : found->second;
+}
+
+NamedCamera checked(const std::filesystem::path& path, const CameraRecord& record, std::optional<ImageSize> size) {
+  Camera camera = record.camera;
+  if (camera.width == 0 && camera.height == 0) {
+    if (!size) throw InputError(path, record.line, "says no image size", "give it the images' width and height");
+    camera.width = size->width;
+    camera.height = size->height;
+  }
+  if (const auto fault = find_fault(camera)) {
+    throw InputError(path, line_of(record, *fault), fmt::format("camera '{}': {}", record.name, *fault),
+                     "correct the file or calibrate the camera again");
+  }
+  return {record.name, camera};
+}
+
+// A string in YAML's double quotes.
+std::string quoted(const std::string& name) {
+  std::string text = "\"";
+  for (const char c : name) {
+    if (c == '"' || c == '\\') text += '\\';
+    text += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+  }
+  return text + '"';
+}
+
+}  // namespace
+
+void set_intrinsics(const std::filesystem::path& path, int line, std::span<const double> K, Camera& camera) {
+  const bool shaped = K.size() == 9 && K[3] == 0 && K[6] == 0 && K[7] == 0 && K[8] == 1;
+  if (!shaped) {
+    throw InputError(path, line, "is no camera matrix", "[fx 0 cx; 0 fy cy; 0 0 1] is wanted");
+  }
+  if (std::abs(K[1]) > 1e-6 * std::abs(K[0])) {
+    throw InputError(path, line, fmt::format("the camera matrix has a skew of {} px, which is not supported", K[1]),
+                     "calibrate without skew");
+  }
+  camera.fx = K[0];
+  camera.cx = K[2];
+  camera.fy = K[4];
+  camera.cy = K[5];
+}
+
+int parse_size(const std::filesystem::path& path, int line, std::string_view word) {
+  const long long size = parse_integer(path, line, word);
+  if (size < 0 || size > 1'000'000) throw InputError(path, line, fmt::format("{} is no image size in px", size), "");
+  return static_cast<int>(size);
+}
+
+BrownConrady distortion_from(const std::filesystem::path& path, int line, std::span<const double> k) {
+  const bool other_model = std::any_of(k.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(5, k.size())),
+                                       k.end(), [](double value) { return value != 0; });
+  if (other_model) {
+    throw InputError(path, line, fmt::format("distortion with {} coefficients is not supported", k.size()),
+                     "calibrate with k1 k2 p1 p2 k3");
+  }
+  const auto at = [&](std::size_t i) { return i < k.size() ? k[i] : 0.0; };
+  return {at(0), at(1), at(2), at(3), at(4)};
+}
+
+std::vector<NamedCamera> read_cameras(const std::filesystem::path& path, std::optional<ImageSize> size_of_images) {
+  std::vector<NamedCamera> cameras;
+  for (const CameraRecord& record : parse(path)) cameras.push_back(checked(path, record, size_of_images));
+  return cameras;
+}
+
+Camera read_camera(const std::filesystem::path& path, std::optional<ImageSize> size_of_images) {
+  const std::vector<NamedCamera> cameras = read_cameras(path, size_of_images);
+  for (const NamedCamera& other : cameras) {
+    if (other.camera == cameras.front().camera) continue;
+    throw InputError(path, 0,
+                     fmt::format("holds {} cameras ('{}', '{}', ...), one is wanted", cameras.size(),
+                                 cameras.front().name, other.name),
+                     "keep only the one of these images");
+  }
+  return cameras.front().camera;
+}
+
+void write_camera(const std::filesystem::path& path, const Camera& c, const std::string& name) {
+  const BrownConrady& k = c.distortion;
+  std::string text = "# pixel (0, 0) is the centre of the top-left pixel; distortion in OpenCV's order and signs\n";
+  text += fmt::format("camera:\n  name: {}\n  model: {}\n  resolution_px: [{}, {}]\n", quoted(name),
+                      k == BrownConrady{} ? "pinhole" : "brown_conrady", c.width, c.height);
+  text += fmt::format("  intrinsics_px: {{fx: {}, fy: {}, cx: {}, cy: {}}}\n", c.fx, c.fy, c.cx, c.cy);
+  if (k != BrownConrady{}) {
+    text += fmt::format("  distortion: {{k1: {}, k2: {}, p1: {}, p2: {}, k3: {}}}\n", k.k1, k.k2, k.p1, k.p2, k.k3);
+  }
+  write_file(path, text);
+}
+
+}  // namespace alidade
