@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "capture/frame_source.h"
+
+namespace alidade {
+
+/// An image file and its moment.
+struct TimedImage {
+  std::filesystem::path path;
+  Timestamp time{};
+};
+
+/// The images in the order given; `timed` says whether the times mean anything (FrameSource::has_times), `description`
+/// goes to the report. Read ahead in a thread. Throws InputError where `images` is empty.
+std::unique_ptr<FrameSource> open_images(std::vector<TimedImage> images, bool timed, const std::string& description);
+
+/// Opens what the user names: a folder or glob ("shots/*.jpg") of images, in natural order of their names
+/// (2 before 10); one image; or a list, a text file with a name per line, or a time in s and a name (TUM's rgb.txt).
+/// Times come from times.csv or frames.csv beside the images (columns t_ns and image, which then say the order too),
+/// from the list, or from names that are times; else from `fps_hz`; else each frame is given 1 s and has_times() is
+/// false. Throws InputError where there is nothing of that name or no image in it.
+std::unique_ptr<FrameSource> open_files(const std::string& source, std::optional<double> fps_hz = std::nullopt);
+
+}  // namespace alidade

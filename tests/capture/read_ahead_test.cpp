@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "capture/read_ahead.h"
+
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "core/errors.h"
+
+namespace alidade {
+namespace {
+
+/// Counts to `count`, then ends, or throws where `broken`.
+class Counter : public FrameSource {
+ public:
+  Counter(int count, bool broken, std::atomic<int>* given) : count_(count), broken_(broken), given_(given) {}
+  std::optional<Frame> next() override {
+    if (next_ == count_ && broken_) throw InputError("frame.jpg", 0, "damaged", "");
+    if (next_ == count_) return std::nullopt;
+    ++*given_;
+    return Frame{next_++, {}, "", cv::Mat(1, 1, CV_8U)};
+  }
+  std::optional<int> frame_count() const override { return count_; }
+  bool has_times() const override { return true; }
+  std::string describe() const override { return "a counter"; }
+  std::optional<std::string> fault() const override { return "cut off"; }
+
+ private:
+  int count_;
+  bool broken_;
+  std::atomic<int>* given_;
+  int next_ = 0;
+};
+
+TEST(ReadAhead, KeepsTheOrderAndTheFacts) {
+  std::atomic<int> given = 0;
+  const auto source = read_ahead(std::make_unique<Counter>(100, false, &given), 3);
+  EXPECT_EQ(source->frame_count(), 100);
+  EXPECT_TRUE(source->has_times());
+  EXPECT_EQ(source->describe(), "a counter");
+  for (int i = 0; i < 100; ++i) {
+    const auto frame = source->next();
+    ASSERT_TRUE(frame);
+    EXPECT_EQ(frame->index, i);
+  }
+  EXPECT_FALSE(source->next());
+  EXPECT_FALSE(source->next());
+  EXPECT_EQ(source->fault(), "cut off");
+}
+
+TEST(ReadAhead, ThrowsInTheirPlaceTheErrorsOfTheSource) {
+  std::atomic<int> given = 0;
+  const auto source = read_ahead(std::make_unique<Counter>(5, true, &given), 3);
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(source->next());
+  EXPECT_THROW(source->next(), InputError);
+  EXPECT_FALSE(source->next());
+}
+
+TEST(ReadAhead, StopsAtItsCapacityAndWhenItDies) {
+  std::atomic<int> given = 0;
+  {
+    const auto source = read_ahead(std::make_unique<Counter>(1000, false, &given), 4);
+    ASSERT_TRUE(source->next());
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    EXPECT_LE(given, 6);  // one taken, four queued, one waiting for room
+  }
+  EXPECT_LE(given, 6);
+}
+
+TEST(ReadAhead, NeedsASourceAndRoom) {
+  std::atomic<int> given = 0;
+  EXPECT_THROW(read_ahead(nullptr), std::invalid_argument);
+  EXPECT_THROW(read_ahead(std::make_unique<Counter>(1, false, &given), 0), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace alidade
