@@ -202,16 +202,11 @@ double rms_px(const Camera& camera, const PointMap& map, const BundleOptions& op
   return count > 0 ? std::sqrt(sum / count) : 0.0;
 }
 
-double focal_sigma(ceres::Problem& problem, double* focal_factor) {
-  ceres::Covariance::Options options;
-  options.algorithm_type = ceres::SPARSE_QR;
-  options.num_threads = 1;
-  ceres::Covariance covariance(options);
-  double variance = 0;
-  const std::vector<std::pair<const double*, const double*>> blocks{{focal_factor, focal_factor}};
-  if (!covariance.Compute(blocks, &problem)) return 0.0;
-  covariance.GetCovarianceBlock(focal_factor, focal_factor, &variance);
-  return std::sqrt(variance);
+// The robust cost is half a squared distance in standard deviations: what freeing the focal length has gained tells
+// how many of its own it has moved. A scale-free problem has no covariance to ask.
+double focal_sigma(double focal_factor, double cost_before, double cost_after) {
+  const double gained = 2.0 * (cost_before - cost_after);
+  return gained > 0 ? std::abs(focal_factor - 1.0) / std::sqrt(gained) : 0.0;
 }
 
 }  // namespace
@@ -249,7 +244,9 @@ BundleResult adjust_bundle(const Camera& camera, PointMap map, const BundleOptio
   result.seconds = summary.total_time_in_seconds;
   result.converged = summary.termination_type == ceres::CONVERGENCE;
   result.focal_factor = blocks.focal_factor;
-  if (options.refine_focal) result.focal_factor_sigma = focal_sigma(problem, &blocks.focal_factor);
+  if (options.refine_focal) {
+    result.focal_factor_sigma = focal_sigma(blocks.focal_factor, summary.initial_cost, summary.final_cost);
+  }
 
   for (int k : options.free_keyframes) {
     const auto i = static_cast<std::size_t>(k);
@@ -292,6 +289,21 @@ SightingCut remove_outlying_sightings(const Camera& camera, PointMap map, double
   }
   cut.map = std::move(map);
   return cut;
+}
+
+double reprojection_sigma(const Camera& camera, const PointMap& map) {
+  std::vector<double> lengths;
+  for (const Keyframe& keyframe : map.keyframes) {
+    const Eigen::Isometry3d T_camera_world = keyframe.T_world_camera.inverse();
+    for (const Sighting& s : keyframe.sightings) {
+      const auto projection = project(camera, T_camera_world * map.points[static_cast<std::size_t>(s.point)].p_world);
+      if (projection) lengths.push_back((projection->pixel - s.pixel).norm() / s.sigma_px);
+    }
+  }
+  if (lengths.empty()) return 1.0;
+  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+  std::nth_element(lengths.begin(), middle, lengths.end());
+  return *middle / 1.1774;  // the median of a Rayleigh distribution
 }
 
 double reprojection_rms_px(const Camera& camera, const PointMap& map) {

@@ -25,7 +25,7 @@ struct BundleResult {
   double seconds = 0;
   bool converged = false;
   double focal_factor = 1.0;        ///< with refine_focal: what fx and fy have to be multiplied with
-  double focal_factor_sigma = 0.0;  ///< its standard deviation, poses and points free
+  double focal_factor_sigma = 0.0;  ///< its standard deviation, from the gain in cost (the map must have converged before)
 };
 
 /// Moves the free keyframes and every point that they see to the least robust reprojection error over the sightings of
@@ -44,6 +44,10 @@ struct SightingCut {
 /// Removes sightings that lie behind their camera or whose residual exceeds `most_sigmas`, then every point's sightings
 /// where fewer than two are left.
 SightingCut remove_outlying_sightings(const Camera& camera, PointMap map, double most_sigmas);
+
+/// The standard deviation of one coordinate of the residuals in units of the sightings' sigma_px, from their median
+/// length: outliers do not raise it. 1 for a map without sightings.
+double reprojection_sigma(const Camera& camera, const PointMap& map);
 
 /// Root mean square length of the residuals of all sightings, px; 0 for a map without any.
 double reprojection_rms_px(const Camera& camera, const PointMap& map);

@@ -10,6 +10,9 @@
 namespace alidade {
 namespace {
 
+constexpr double kLossSigmas = 2.0;  // where the Cauchy loss begins to doubt, in standard deviations as found
+constexpr double kCutSigmas = 5.0;   // beyond it a sighting is taken for a mismatch
+
 std::vector<int> all_keyframes(const PointMap& map) {
   std::vector<int> all(map.keyframes.size());
   std::iota(all.begin(), all.end(), 0);
@@ -30,14 +33,16 @@ RefinedTrack refine_globally(const Camera& camera, LiveMap live, std::vector<Fra
                                          all_keyframes(live.map), radius_px);
     live = std::move(completion.live);
     summary.sightings_added += completion.added;
+    bundle.loss_sigmas = kLossSigmas * reprojection_sigma(camera, live.map);
     const BundleResult result = adjust_bundle(camera, std::move(live.map), bundle);
     summary.iterations += result.iterations;
     summary.seconds += result.seconds;
-    SightingCut cut = remove_outlying_sightings(camera, result.map, 4.0);
+    SightingCut cut = remove_outlying_sightings(camera, result.map, kCutSigmas * reprojection_sigma(camera, result.map));
     summary.sightings_removed += cut.removed;
     live.map = std::move(cut.map);
     release_removed_sightings(live);
   }
+  bundle.loss_sigmas = kLossSigmas * reprojection_sigma(camera, live.map);
   BundleResult last = adjust_bundle(camera, std::move(live.map), bundle);
   summary.iterations += last.iterations;
   summary.seconds += last.seconds;
