@@ -2,6 +2,7 @@
 #include "app/progress_display.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <ostream>
 #include <string_view>
@@ -20,7 +21,7 @@ constexpr auto kJsonInterval = std::chrono::milliseconds(200);  // enough for a 
 constexpr int kBarCells = 24;
 
 std::string format_duration(double seconds) {
-  const auto whole = static_cast<long>(seconds + 0.5);
+  const auto whole = std::lround(seconds);
   if (whole < 60) return fmt::format("{} s", whole);
   if (whole < 3600) return fmt::format("{}:{:02} min", whole / 60, whole % 60);
   return fmt::format("{}:{:02} h", whole / 3600, whole / 60 % 60);

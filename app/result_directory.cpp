@@ -97,7 +97,7 @@ ResultDirectory::~ResultDirectory() {
 }
 
 fs::path ResultDirectory::path(const std::string& name) const {
-  const fs::path path = part_ / name;
+  fs::path path = part_ / name;
   std::error_code error;
   fs::create_directories(path.parent_path(), error);
   if (error) refused(path.parent_path(), "create", error.value());
