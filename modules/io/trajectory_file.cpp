@@ -122,18 +122,21 @@ TrajectoryFile read_file(const fs::path& path) {
   return file;
 }
 
-Trajectory with_times_of(const fs::path& times_path, Trajectory poses, const fs::path& poses_path) {
+Trajectory with_times_of(const fs::path& times_path, const Trajectory& poses, const fs::path& poses_path) {
   const std::vector<TextRow> rows = read_rows(times_path);
   if (rows.size() != poses.size()) {
     refuse(times_path, 0, fmt::format("has {} times, {} has {} poses", rows.size(), poses_path.string(), poses.size()),
            "both need one line per frame");
   }
+  Trajectory timed;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto time = parse_seconds(rows[i].fields[0]);
     if (!time) refuse(times_path, rows[i].line, "is not a time in seconds", "correct the line");
-    poses[i].time = *time;
+    timed.push_back(poses[i]);
+    timed.back().time = *time;
+    require_order(times_path, rows[i].line, timed);
   }
-  return poses;
+  return timed;
 }
 
 // A file of poses without times, in a folder of frames that are timed by times.txt or by KITTI's rate.
@@ -142,7 +145,7 @@ TrajectoryFile read_frames(const fs::path& folder, const fs::path& poses_path) {
   if (file.has_times) return file;
   file.has_times = true;
   if (fs::exists(folder / "times.txt")) {
-    file.poses = with_times_of(folder / "times.txt", std::move(file.poses), poses_path);
+    file.poses = with_times_of(folder / "times.txt", file.poses, poses_path);
     return file;
   }
   for (std::size_t i = 0; i < file.poses.size(); ++i) {
