@@ -80,6 +80,28 @@ TEST(IntersectRays, TrustsThePreciseRaysMore) {
   EXPECT_GT(intersect_rays(rays, kLeastAngle)->p_world.y(), 0.09);
 }
 
+// At the solution the pulls of the rays, each weighed by its noise at the range to the solution itself, cancel. Ranges
+// from 1 to 50 m: the weights of the first round, all alike, are far from it.
+TEST(IntersectRays, SettlesTheWeightsAtTheSolution) {
+  test::RandomGeometry random(kSeed);
+  const Eigen::Vector3d p(0, 0, 0);
+  std::vector<Ray> rays;
+  for (double range : {1.0, 5.0, 20.0, 50.0}) {
+    Ray ray = ray_to(p, range * random.direction(), 5e-3);
+    ray.direction_world = exp_so3(random.vector(5e-3)) * ray.direction_world;
+    rays.push_back(ray);
+  }
+  const auto found = intersect_rays(rays, kLeastAngle);
+  ASSERT_TRUE(found);
+  Eigen::Vector3d pull = Eigen::Vector3d::Zero();
+  for (const Ray& ray : rays) {
+    const Eigen::Vector3d to_point = found->p_world - ray.origin_world;
+    const Eigen::Vector3d across = to_point - to_point.dot(ray.direction_world) * ray.direction_world;
+    pull += across / (ray.sigma_rad * ray.sigma_rad * to_point.squaredNorm());
+  }
+  EXPECT_LT((found->covariance_world * pull).norm(), 1e-6) << "seed " << kSeed;
+}
+
 TEST(IntersectRays, IsEmptyBelowTwoRays) {
   EXPECT_FALSE(intersect_rays({}, kLeastAngle));
   EXPECT_FALSE(intersect_rays(std::vector<Ray>{ray_to({0, 0, 1}, {0, 0, 0})}, kLeastAngle));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/trajectory_file.h"
 
+#include <cmath>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -45,18 +46,21 @@ std::string fault_of_text(const std::string& text) {
 // A quarter turn about z: camera x points along world y.
 const Eigen::Matrix3d kQuarterTurn = (Eigen::Matrix3d() << 0, -1, 0, 1, 0, 0, 0, 0, 1).finished();
 
+// Of the quaternion with vector (0, 0, 0.6) and scalar 0.8: a turn about z by 2 atan(0.6 / 0.8).
+const Eigen::Matrix3d kTurn = exp_so3({0, 0, 2.0 * std::atan2(0.6, 0.8)});
+
 TEST(ReadTrajectory, ReadsTum) {
   const test::TemporaryDirectory folder;
   const TrajectoryFile file = read_trajectory(folder.write("a.txt",
                                                            "# timestamp tx ty tz qx qy qz qw\r\n"
-                                                           "1305031229.528748 1 2 3 0 0 0.70710678 0.70710678\r\n\r\n"
+                                                           "1305031229.528748 1 2 3 0 0 0.6 0.8\r\n\r\n"
                                                            "1305031229.564425\t-1e-3 +2 3  0 0 0 1\r\n"));
   EXPECT_EQ(file.format, TrajectoryFormat::Tum);
   EXPECT_TRUE(file.has_times);
   ASSERT_EQ(file.poses.size(), 2u);
   EXPECT_EQ(file.poses[0].time, Timestamp(1305031229528748000ns));
   EXPECT_EQ(file.poses[0].T_world_camera.translation(), Eigen::Vector3d(1, 2, 3));
-  EXPECT_TRUE(file.poses[0].T_world_camera.linear().isApprox(kQuarterTurn, 1e-12));
+  EXPECT_TRUE(file.poses[0].T_world_camera.linear().isApprox(kTurn, 1e-12));
   EXPECT_EQ(file.poses[1].T_world_camera.translation(), Eigen::Vector3d(-1e-3, 2, 3));
 }
 
@@ -76,11 +80,11 @@ TEST(ReadTrajectory, ReadsEurocWithTheScalarOfTheQuaternionFirst) {
   const TrajectoryFile file = read_trajectory(folder.write(
       "data.csv",
       "#timestamp [ns], p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z [], v\n"
-      "1403636580838555648,4.5,-1.6,0.7,0.70710678,0,0,0.70710678,0.1\n"));
+      "1403636580838555648,4.5,-1.6,0.7,0.8,0,0,0.6,0.1\n"));
   EXPECT_EQ(file.format, TrajectoryFormat::Euroc);
   EXPECT_EQ(file.poses.at(0).time, Timestamp(1403636580838555648ns));
   EXPECT_EQ(file.poses[0].T_world_camera.translation(), Eigen::Vector3d(4.5, -1.6, 0.7));
-  EXPECT_TRUE(file.poses[0].T_world_camera.linear().isApprox(kQuarterTurn, 1e-12));
+  EXPECT_TRUE(file.poses[0].T_world_camera.linear().isApprox(kTurn, 1e-12));
 }
 
 TEST(ReadTrajectory, ReadsAFolderOfStrechaCameras) {
