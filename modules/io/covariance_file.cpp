@@ -7,7 +7,8 @@
 #include <fmt/format.h>
 
 #include "core/errors.h"
-#include "io/text_file.h"
+#include "io/atomic_file.h"
+#include "io/text_rows.h"
 #include "io/trajectory_file.h"
 
 namespace alidade {
@@ -74,7 +75,7 @@ void write_covariances(const fs::path& path, const Trajectory& trajectory) {
     }
     text += '\n';
   }
-  write_text(path, text);
+  write_file(path, text);
 }
 
 Trajectory read_covariances(const fs::path& path, Trajectory trajectory) {

@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "geometry/trajectory.h"
-#include "io/text_file.h"
+#include "io/text_rows.h"
 
 namespace alidade {
 

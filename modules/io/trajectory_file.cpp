@@ -8,8 +8,9 @@
 #include <fmt/format.h>
 
 #include "core/errors.h"
+#include "io/atomic_file.h"
 #include "io/pose_folder.h"
-#include "io/text_file.h"
+#include "io/text_rows.h"
 
 namespace alidade {
 namespace {
@@ -193,7 +194,7 @@ void write_trajectory_tum(const fs::path& path, const Trajectory& trajectory) {
     text += fmt::format("{} {} {} {} {} {} {} {}\n", format_seconds(pose.time), t.x(), t.y(), t.z(), q.x(), q.y(),
                         q.z(), q.w());
   }
-  write_text(path, text);
+  write_file(path, text);
 }
 
 }  // namespace alidade
