@@ -5,10 +5,10 @@
 #include "capture/image_names.h"
 #include "core/errors.h"
 #include "datasets/dataset.h"
-#include "datasets/pose_matrix.h"
 #include "io/camera_file.h"
 #include "io/image_files.h"
 #include "io/text_lines.h"
+#include "io/trajectory_file.h"
 
 namespace alidade {
 namespace {
@@ -62,17 +62,6 @@ Eigen::Isometry3d place_of_camera(const fs::path& path, std::size_t index) {
   return T_camera0_camera;
 }
 
-std::vector<Eigen::Isometry3d> read_poses(const fs::path& path) {
-  std::vector<Eigen::Isometry3d> poses;
-  for (const TextLine& line : read_lines(path)) {
-    const std::vector<double> numbers = twelve_numbers(path, line);
-    const Eigen::Matrix<double, 3, 4> T =
-        Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(numbers.data());
-    poses.push_back(pose_from(path, line.number, T.leftCols<3>(), T.col(3)));
-  }
-  return poses;
-}
-
 std::vector<Timestamp> read_times(const fs::path& folder, std::size_t count) {
   std::vector<Timestamp> times;
   if (const fs::path path = folder / "times.txt"; fs::exists(path)) {
@@ -108,7 +97,7 @@ std::optional<Dataset> open_kitti(const fs::path& folder) {
   dataset.camera = read_left_camera(calibration, source->camera, images.front());
   const Eigen::Isometry3d T_camera0_camera = place_of_camera(calibration, source->camera);
   const auto poses_file = find_poses(folder);
-  const auto poses = poses_file ? read_poses(*poses_file) : std::vector<Eigen::Isometry3d>{};
+  const Trajectory poses = poses_file ? read_trajectory(*poses_file).poses : Trajectory{};
   if (poses_file && poses.size() != images.size()) {
     throw InputError(*poses_file, 0, fmt::format("has {} poses for {} images", poses.size(), images.size()), "");
   }
@@ -116,8 +105,8 @@ std::optional<Dataset> open_kitti(const fs::path& folder) {
   for (std::size_t i = 0; i < images.size(); ++i) {
     dataset.frames.push_back({times[i], images[i], std::nullopt, std::nullopt});
     if (!poses_file) continue;
-    dataset.frames.back().T_world_camera = poses[i] * T_camera0_camera;
-    dataset.truth.push_back({times[i], poses[i] * T_camera0_camera, std::nullopt});
+    dataset.frames.back().T_world_camera = poses[i].T_world_camera * T_camera0_camera;
+    dataset.truth.push_back({times[i], *dataset.frames.back().T_world_camera, std::nullopt});
   }
   return dataset;
 }

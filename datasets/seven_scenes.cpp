@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cmath>
 #include <cstdlib>
 
 #include "capture/image_names.h"
-#include "core/errors.h"
 #include "datasets/dataset.h"
-#include "datasets/pose_matrix.h"
-#include "io/text_lines.h"
+#include "datasets/find_camera.h"
+#include "io/pose_files.h"
 
 namespace alidade {
 namespace {
@@ -23,30 +21,6 @@ fs::path pose_file(const fs::path& image) {
   return image.parent_path() / image.stem().replace_extension(".pose.txt");
 }
 
-// Where the fusion lost track, the set's authors wrote "-1.#IND", inf or nan.
-bool says_lost(const std::vector<TextLine>& lines) {
-  for (const TextLine& line : lines) {
-    for (const char* word : {"#IN", "#QNAN", "inf", "nan", "NaN", "INF"}) {
-      if (line.text.find(word) != std::string::npos) return true;
-    }
-  }
-  return false;
-}
-
-std::optional<Eigen::Isometry3d> read_pose(const fs::path& path) {
-  const std::vector<TextLine> lines = read_lines(path);
-  if (lines.size() != 4) throw InputError(path, 0, "holds no pose", "4 rows of a 4x4 matrix are wanted");
-  if (says_lost(lines)) return std::nullopt;
-  Eigen::Matrix4d T;
-  for (int i = 0; i < 4; ++i) {
-    const TextLine& line = lines[static_cast<std::size_t>(i)];
-    const std::vector<double> row = parse_numbers(path, line);
-    if (row.size() != 4) throw InputError(path, line.number, "a row of a 4x4 matrix is wanted", "");
-    T.row(i) = Eigen::Map<const Eigen::RowVector4d>(row.data());
-  }
-  return pose_from(path, lines.front().number, T.topLeftCorner<3, 3>(), T.topRightCorner<3, 1>());
-}
-
 }  // namespace
 
 std::optional<Dataset> open_seven_scenes(const fs::path& folder) {
@@ -61,7 +35,7 @@ std::optional<Dataset> open_seven_scenes(const fs::path& folder) {
     if (!is_colour_image(image)) continue;
     const std::string number = image.filename().native().substr(6);
     const Timestamp time(from_seconds(std::atoi(number.c_str()) / kFrameRateHz));
-    const auto T_world_camera = fs::exists(pose_file(image)) ? read_pose(pose_file(image)) : std::nullopt;
+    const auto T_world_camera = fs::exists(pose_file(image)) ? read_pose_matrix(pose_file(image)) : std::nullopt;
     dataset.frames.push_back({time, image, std::nullopt, T_world_camera});
     if (T_world_camera) dataset.truth.push_back({time, *T_world_camera, std::nullopt});
   }

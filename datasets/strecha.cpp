@@ -4,10 +4,10 @@
 #include "capture/image_names.h"
 #include "core/errors.h"
 #include "datasets/dataset.h"
-#include "datasets/pose_matrix.h"
 #include "io/camera_file.h"
 #include "io/image_files.h"
-#include "io/text_lines.h"
+#include "io/natural_order.h"
+#include "io/pose_files.h"
 
 namespace alidade {
 namespace {
@@ -35,20 +35,6 @@ fs::path find_image(const fs::path& folder, const fs::path& camera_file) {
   throw InputError(camera_file, 0, "its image '" + name.string() + "' is missing", "");
 }
 
-// Lines 5 to 7 hold R_world_camera, line 8 the centre; read_camera has judged the rest.
-Eigen::Isometry3d read_pose(const fs::path& path) {
-  const std::vector<TextLine> lines = read_lines(path);
-  if (lines.size() != 9) throw InputError(path, 0, "holds no pose", "the file may be cut off");
-  Eigen::Matrix<double, 4, 3> rows;
-  for (int i = 0; i < 4; ++i) {
-    const std::vector<double> numbers = parse_numbers(path, lines[static_cast<std::size_t>(4 + i)]);
-    if (numbers.size() != 3)
-      throw InputError(path, lines[static_cast<std::size_t>(4 + i)].number, "3 numbers are wanted", "");
-    rows.row(i) = Eigen::Map<const Eigen::RowVector3d>(numbers.data());
-  }
-  return pose_from(path, lines[4].number, rows.topRows<3>(), rows.row(3).transpose());
-}
-
 }  // namespace
 
 std::optional<Dataset> open_strecha(const fs::path& folder) {
@@ -61,7 +47,7 @@ std::optional<Dataset> open_strecha(const fs::path& folder) {
     if (dataset.frames.empty()) dataset.camera = camera;
     if (dataset.camera && *dataset.camera != camera) dataset.camera.reset();
     const Timestamp time(from_seconds(static_cast<double>(dataset.frames.size())));
-    const Eigen::Isometry3d T_world_camera = read_pose(file);
+    const Eigen::Isometry3d T_world_camera = read_strecha_pose(file);
     dataset.frames.push_back({time, find_image(folder, file), std::nullopt, T_world_camera});
     dataset.truth.push_back({time, T_world_camera, std::nullopt});
   }

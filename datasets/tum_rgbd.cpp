@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cmath>
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "core/errors.h"
 #include "datasets/dataset.h"
-#include "datasets/pose_matrix.h"
+#include "datasets/find_camera.h"
 #include "io/text_lines.h"
+#include "io/trajectory_file.h"
 
 namespace alidade {
 namespace {
@@ -37,33 +36,6 @@ std::vector<TimedFile> read_file_list(const fs::path& list) {
     }
   }
   return files;
-}
-
-StampedPose read_pose(const fs::path& path, const TextLine& line) {
-  const std::vector<double> numbers = parse_numbers(path, line);
-  const auto time = parse_seconds(split_words(line.text).front());
-  if (numbers.size() != 8 || !time) {
-    throw InputError(path, line.number, "'timestamp tx ty tz qx qy qz qw' is wanted", "");
-  }
-  const Eigen::Quaterniond q(numbers[7], numbers[4], numbers[5], numbers[6]);
-  if (std::abs(q.norm() - 1.0) > 1e-2) {
-    throw InputError(path, line.number, fmt::format("the quaternion has length {}, not 1", q.norm()), "");
-  }
-  StampedPose pose{*time, Eigen::Isometry3d::Identity(), std::nullopt};
-  pose.T_world_camera.linear() = q.normalized().toRotationMatrix();
-  pose.T_world_camera.translation() = Eigen::Map<const Eigen::Vector3d>(&numbers[1]);
-  return pose;
-}
-
-Trajectory read_truth(const fs::path& path) {
-  Trajectory truth;
-  if (!fs::exists(path)) return truth;
-  for (const TextLine& line : read_lines(path)) {
-    truth.push_back(read_pose(path, line));
-    const bool backwards = truth.size() > 1 && truth.back().time <= truth[truth.size() - 2].time;
-    if (backwards) throw InputError(path, line.number, "time does not increase", "");
-  }
-  return truth;
 }
 
 // Gives each depth image to the colour image nearest in time.
@@ -95,7 +67,7 @@ std::optional<Camera> published_camera(const fs::path& folder) {
 std::optional<Dataset> open_tum_rgbd(const fs::path& folder) {
   if (!fs::exists(folder / "rgb.txt")) return std::nullopt;
   Dataset dataset{.kind = "tum-rgbd", .folder = folder, .depth_unit_m = kDepthUnitM, .timed = true};
-  dataset.truth = read_truth(folder / "groundtruth.txt");
+  if (fs::exists(folder / "groundtruth.txt")) dataset.truth = read_trajectory(folder / "groundtruth.txt").poses;
   for (const TimedFile& file : read_file_list(folder / "rgb.txt")) {
     dataset.frames.push_back({file.time, file.path, std::nullopt, pose_at(dataset.truth, file.time, kLongestGap)});
   }

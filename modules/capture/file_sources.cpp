@@ -12,6 +12,7 @@
 #include "capture/read_ahead.h"
 #include "core/errors.h"
 #include "io/image_files.h"
+#include "io/natural_order.h"
 #include "io/table.h"
 #include "io/text_lines.h"
 

@@ -4,15 +4,11 @@
 #include <filesystem>
 #include <optional>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "core/time.h"
 
 namespace alidade {
-
-/// Whether a stands before b when runs of digits count as numbers: frame2 before frame10.
-bool natural_less(std::string_view a, std::string_view b);
 
 /// The images of a folder, in natural order of their names. Throws InputError where there is no such folder or no image
 /// in it.

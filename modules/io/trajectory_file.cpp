@@ -9,7 +9,7 @@
 
 #include "core/errors.h"
 #include "io/atomic_file.h"
-#include "io/pose_folder.h"
+#include "io/pose_files.h"
 #include "io/text_rows.h"
 
 namespace alidade {
@@ -169,10 +169,14 @@ std::optional<TrajectoryFile> read_named_file(const fs::path& folder) {
 TrajectoryFile read_folder(const fs::path& folder) {
   if (auto file = read_named_file(folder)) return *std::move(file);
   if (const auto files = files_ending_in(folder, ".pose.txt"); !files.empty()) {
-    return {folder, TrajectoryFormat::SevenScenes, true, read_seven_scenes(files)};
+    Trajectory poses = read_seven_scenes(files);
+    if (poses.empty()) refuse(folder, 0, "all of its poses are marked as lost", "give another sequence");
+    return {folder, TrajectoryFormat::SevenScenes, true, std::move(poses)};
   }
-  if (const auto files = files_ending_in(folder, ".camera"); !files.empty()) {
-    return {folder, TrajectoryFormat::Strecha, true, read_strecha(files)};
+  for (const fs::path& place : {folder, folder / "gt_dense_cameras"}) {
+    if (!fs::is_directory(place)) continue;
+    const auto files = files_ending_in(place, ".camera");
+    if (!files.empty()) return {place, TrajectoryFormat::Strecha, true, read_strecha(files)};
   }
   refuse(folder, 0, "holds no known trajectory",
          "expected trajectory.tum, truth.tum, groundtruth.txt, poses.txt, data.csv, *.pose.txt or *.camera");

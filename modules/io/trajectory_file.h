@@ -24,7 +24,7 @@ struct TrajectoryFile {
 /// frame);
 /// - KITTI: 12 numbers, the rows of [R t]; times index seconds;
 /// - a folder of 7-Scenes `*.pose.txt` (4×4 camera→world; time = number in the name / 30 s), or of Strecha `*.camera`
-///   (camera→world and centre; time = index in sorted order, s);
+///   (camera→world and centre; time = index in natural order, s; also in `gt_dense_cameras/`);
 /// - a dataset or result folder that holds `trajectory.tum`, `truth.tum`, `groundtruth.txt` (TUM), `poses.txt` (KITTI;
 ///   times from `times.txt`, else 10 Hz), EuRoC's `data.csv`; or a KITTI odometry sequence with `../../poses/NN.txt`.
 /// Throws InputError with path and line for what is not finite, not a rotation, of another number of columns than the

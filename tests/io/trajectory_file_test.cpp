@@ -113,6 +113,28 @@ TEST(ReadTrajectory, TimesSevenScenesByTheFrameNumber) {
   EXPECT_TRUE(file.poses[1].T_world_camera.linear().isApprox(kQuarterTurn, 1e-12));
 }
 
+TEST(ReadTrajectory, LeavesOutSevenScenesFramesThatTheFusionLost) {
+  const test::TemporaryDirectory folder;
+  folder.write("frame-000000.pose.txt", "-1.#IND 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  EXPECT_EQ(fault_of(folder, folder.path()).substr(folder.path().string().size()),
+            ": all of its poses are marked as lost; give another sequence");
+  folder.write("frame-000001.pose.txt", "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  const TrajectoryFile file = read_trajectory(folder.path());
+  ASSERT_EQ(file.poses.size(), 1u);
+  EXPECT_EQ(file.poses[0].time, Timestamp(33333333ns));
+}
+
+TEST(ReadTrajectory, CountsStrechaCamerasInNaturalOrder) {
+  const test::TemporaryDirectory folder;
+  std::filesystem::create_directory(folder / "gt_dense_cameras");
+  const std::string before_centre = "9 0 4\n0 9 3\n0 0 1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
+  folder.write("gt_dense_cameras/10.png.camera", before_centre + "10 0 0\n8 6\n");
+  folder.write("gt_dense_cameras/9.png.camera", before_centre + "9 0 0\n8 6\n");
+  const TrajectoryFile file = read_trajectory(folder.path());
+  EXPECT_EQ(file.poses.at(0).T_world_camera.translation().x(), 9.0);
+  EXPECT_EQ(file.poses.at(1).T_world_camera.translation().x(), 10.0);
+}
+
 TEST(ReadTrajectory, TimesKittiFoldersByTimesTxtOrAtTenHertz) {
   const test::TemporaryDirectory folder;
   folder.write("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 1\n");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/pose_folder.h"
+#include "io/pose_files.h"
 
 #include <algorithm>
 #include <charconv>
@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 
 #include "core/errors.h"
+#include "io/natural_order.h"
+#include "io/text_rows.h"
 
 namespace alidade {
 namespace {
@@ -47,36 +49,16 @@ std::int64_t frame_number(const std::filesystem::path& path) {
   return number;
 }
 
-StampedPose read_pose_matrix(const std::filesystem::path& path) {
-  const std::vector<TextRow> rows = read_rows(path);
-  require_rows(path, rows, 4, "a 4x4 pose");
-  Eigen::Matrix4d M;
-  for (int i = 0; i < 4; ++i) {
-    require_columns(path, rows[i], 4, "a row of a 4x4 pose");
-    for (int j = 0; j < 4; ++j) M(i, j) = finite_number(path, rows[i], j);
+// What the compilers of the set's authors wrote for a number that is none.
+bool says_lost(const std::vector<TextRow>& rows) {
+  for (const TextRow& row : rows) {
+    for (const std::string& field : row.fields) {
+      for (const char* word : {"#IN", "#QNAN", "inf", "INF", "nan", "NaN", "NAN"}) {
+        if (field.find(word) != std::string::npos) return true;
+      }
+    }
   }
-  if (!M.row(3).isApprox(Eigen::RowVector4d(0, 0, 0, 1), 1e-6)) {
-    throw InputError(path.string(), rows[3].line, "the last row of a pose must be 0 0 0 1", "check the row order");
-  }
-  StampedPose pose;
-  pose.time = Timestamp(from_seconds(static_cast<double>(frame_number(path)) / kSevenScenesRateHz));
-  pose.T_world_camera.linear() = nearest_rotation(M.topLeftCorner<3, 3>(), path, rows[0].line);
-  pose.T_world_camera.translation() = M.topRightCorner<3, 1>();
-  return pose;
-}
-
-StampedPose read_camera_file(const std::filesystem::path& path) {
-  constexpr int kFirstRotationRow = 4, kCentreRow = 7, kSizeRow = 8;
-  const std::vector<TextRow> rows = read_rows(path);
-  require_rows(path, rows, 9, "a camera file (K, distortion, R, centre, size)");
-  for (int i = 0; i < kSizeRow; ++i) require_columns(path, rows[i], 3, "this row of a camera file");
-  require_columns(path, rows[kSizeRow], 2, "the size row of a camera file");
-  Eigen::Matrix3d R;
-  for (int i = 0; i < 3; ++i) R.row(i) = three_numbers(path, rows[kFirstRotationRow + i]);
-  StampedPose pose;
-  pose.T_world_camera.linear() = nearest_rotation(R, path, rows[kFirstRotationRow].line);
-  pose.T_world_camera.translation() = three_numbers(path, rows[kCentreRow]).transpose();
-  return pose;
+  return false;
 }
 
 }  // namespace
@@ -86,7 +68,8 @@ std::vector<std::filesystem::path> files_ending_in(const std::filesystem::path& 
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.is_regular_file() && entry.path().filename().string().ends_with(suffix)) files.push_back(entry.path());
   }
-  std::sort(files.begin(), files.end());
+  std::sort(files.begin(), files.end(),
+            [](const auto& a, const auto& b) { return natural_less(a.filename().native(), b.filename().native()); });
   return files;
 }
 
@@ -100,9 +83,44 @@ Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& R, const std::filesystem
   return svd.matrixU() * svd.matrixV().transpose();
 }
 
+std::optional<Eigen::Isometry3d> read_pose_matrix(const std::filesystem::path& path) {
+  const std::vector<TextRow> rows = read_rows(path);
+  require_rows(path, rows, 4, "a 4x4 pose");
+  for (const TextRow& row : rows) require_columns(path, row, 4, "a row of a 4x4 pose");
+  if (says_lost(rows)) return std::nullopt;
+  Eigen::Matrix4d M;
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < 4; ++j) M(i, j) = finite_number(path, rows[i], j);
+  }
+  if (!M.row(3).isApprox(Eigen::RowVector4d(0, 0, 0, 1), 1e-6)) {
+    throw InputError(path.string(), rows[3].line, "the last row of a pose must be 0 0 0 1", "check the row order");
+  }
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  T_world_camera.linear() = nearest_rotation(M.topLeftCorner<3, 3>(), path, rows[0].line);
+  T_world_camera.translation() = M.topRightCorner<3, 1>();
+  return T_world_camera;
+}
+
+Eigen::Isometry3d read_strecha_pose(const std::filesystem::path& path) {
+  constexpr int kFirstRotationRow = 4, kCentreRow = 7, kSizeRow = 8;
+  const std::vector<TextRow> rows = read_rows(path);
+  require_rows(path, rows, 9, "a camera file (K, distortion, R, centre, size)");
+  for (int i = 0; i < kSizeRow; ++i) require_columns(path, rows[i], 3, "this row of a camera file");
+  require_columns(path, rows[kSizeRow], 2, "the size row of a camera file");
+  Eigen::Matrix3d R;
+  for (int i = 0; i < 3; ++i) R.row(i) = three_numbers(path, rows[kFirstRotationRow + i]);
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  T_world_camera.linear() = nearest_rotation(R, path, rows[kFirstRotationRow].line);
+  T_world_camera.translation() = three_numbers(path, rows[kCentreRow]).transpose();
+  return T_world_camera;
+}
+
 Trajectory read_seven_scenes(const std::vector<std::filesystem::path>& files) {
   Trajectory poses;
-  for (const auto& file : files) poses.push_back(read_pose_matrix(file));
+  for (const auto& file : files) {
+    const Timestamp time(from_seconds(static_cast<double>(frame_number(file)) / kSevenScenesRateHz));
+    if (const auto T_world_camera = read_pose_matrix(file)) poses.push_back({time, *T_world_camera, std::nullopt});
+  }
   std::stable_sort(poses.begin(), poses.end(),
                    [](const StampedPose& a, const StampedPose& b) { return a.time < b.time; });
   return poses;
@@ -111,8 +129,7 @@ Trajectory read_seven_scenes(const std::vector<std::filesystem::path>& files) {
 Trajectory read_strecha(const std::vector<std::filesystem::path>& files) {
   Trajectory poses;
   for (const auto& file : files) {
-    poses.push_back(read_camera_file(file));
-    poses.back().time = Timestamp(std::chrono::seconds(poses.size() - 1));
+    poses.push_back({Timestamp(std::chrono::seconds(poses.size())), read_strecha_pose(file), std::nullopt});
   }
   return poses;
 }
