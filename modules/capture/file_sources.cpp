@@ -155,7 +155,7 @@ std::unique_ptr<FrameSource> open_files(const std::string& source, std::optional
     const std::string description = fmt::format("{} images listed in {}", images.size(), source);
     return open_images(std::move(images), true, description);
   }
-  throw InputError(source, 0, "is no image and no list of images", "name a folder, a glob, images or a list");
+  return open_video(source, fps_hz);
 }
 
 }  // namespace alidade

@@ -21,7 +21,11 @@ struct TimedImage {
 /// goes to the report. Read ahead in a thread. Throws InputError where `images` is empty.
 std::unique_ptr<FrameSource> open_images(std::vector<TimedImage> images, bool timed, const std::string& description);
 
-/// Opens what the user names: a folder or glob ("shots/*.jpg") of images, in natural order of their names
+/// The frames of a video with the times of its stream, or `fps_hz` frames per second where the stream has none.
+/// Read ahead in a thread. Throws InputError where it is no video.
+std::unique_ptr<FrameSource> open_video(const std::filesystem::path& path, std::optional<double> fps_hz = std::nullopt);
+
+/// Opens what the user names: a video; a folder or glob ("shots/*.jpg") of images, in natural order of their names
 /// (2 before 10); one image; or a list, a text file with a name per line, or a time in s and a name (TUM's rgb.txt).
 /// Times come from times.csv or frames.csv beside the images (columns t_ns and image, which then say the order too),
 /// from the list, or from names that are times; else from `fps_hz`; else each frame is given 1 s and has_times() is

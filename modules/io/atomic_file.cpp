@@ -23,6 +23,18 @@ std::string remedy_for(int error) {
   return "";
 }
 
+[[noreturn]] void refuse(const std::filesystem::path& path, const char* operation, int error) {
+  throw DeviceError(path, operation, std::generic_category().message(error), remedy_for(error));
+}
+
+// A full disk or a broken network share may speak up only here. EINVAL: a pipe or device, which has nothing to sync.
+// Zero, or the errno of what went wrong; the descriptor is closed in any case.
+int sync_and_close(int descriptor) {
+  const int error = ::fsync(descriptor) != 0 && errno != EINVAL ? errno : 0;
+  const int close_error = ::close(descriptor) != 0 ? errno : 0;
+  return error != 0 ? error : close_error;
+}
+
 }  // namespace
 
 std::filesystem::path part_name(const std::filesystem::path& path) {
@@ -60,16 +72,22 @@ void AtomicFile::flush() {
 void AtomicFile::commit() {
   if (descriptor_ < 0) throw std::invalid_argument("AtomicFile::commit twice");
   flush();
-  // A full disk or a broken network share may speak up only here. EINVAL: a pipe or device, which has nothing to sync.
-  if (::fsync(descriptor_) != 0 && errno != EINVAL) fail("cannot be written", errno);
-  if (::close(std::exchange(descriptor_, -1)) != 0) fail("cannot be closed", errno);
+  if (const int error = sync_and_close(std::exchange(descriptor_, -1))) fail("cannot be written", error);
   if (::rename(part_.c_str(), path_.c_str()) != 0) fail("cannot take its name", errno);
 }
 
 void AtomicFile::fail(const char* operation, int error) {
   if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
   ::unlink(part_.c_str());
-  throw DeviceError(path_, operation, std::generic_category().message(error), remedy_for(error));
+  refuse(path_, operation, error);
+}
+
+void commit_part(const std::filesystem::path& path) {
+  const std::filesystem::path part = part_name(path);
+  const int descriptor = ::open(part.c_str(), O_WRONLY | O_CLOEXEC);
+  if (descriptor < 0) refuse(path, "cannot be written", errno);
+  if (const int error = sync_and_close(descriptor)) refuse(path, "cannot be written", error);
+  if (::rename(part.c_str(), path.c_str()) != 0) refuse(path, "cannot take its name", errno);
 }
 
 void write_file(const std::filesystem::path& path, std::string_view bytes) {

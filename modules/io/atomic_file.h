@@ -36,6 +36,9 @@ class AtomicFile {
 /// Where an unfinished file of this name lives: NAME.part.
 std::filesystem::path part_name(const std::filesystem::path& path);
 
+/// Brings NAME.part, written and closed by other means, to the disk and to its name. Throws DeviceError.
+void commit_part(const std::filesystem::path& path);
+
 /// Writes a whole file through AtomicFile.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 

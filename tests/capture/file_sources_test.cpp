@@ -6,6 +6,7 @@
 #include "io/image_files.h"
 #include "tests/support/input_error.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/video_clip.h"
 
 namespace alidade {
 namespace {
@@ -93,6 +94,27 @@ TEST_F(FileSources, ReadListsWithAndWithoutTimes) {
   EXPECT_EQ(message("list.txt"), "list.txt:2: there is no image '3.png'");
   folder_.write("list.txt", "1 2.png\n1 1.png\n");
   EXPECT_EQ(message("list.txt"), "list.txt:2: time does not increase");
+}
+
+TEST_F(FileSources, GiveAVideoWithTheTimesOfItsStream) {
+  test::write_clip(folder_ / "a.mp4", 12, {VideoKind::Movie, 20.0, 20});
+  const auto source = open_files(folder_ / "a.mp4", 50.0);
+  EXPECT_TRUE(source->has_times());
+  EXPECT_EQ(source->frame_count(), 12);
+  const Seen seen = look(*source);
+  ASSERT_EQ(seen.times_s.size(), 12u);
+  EXPECT_DOUBLE_EQ(seen.times_s[11], 0.55);
+  EXPECT_EQ(seen.names[3], "a.mp4#3");
+  EXPECT_FALSE(source->fault());
+}
+
+TEST_F(FileSources, SayThatAVideoIsCutOff) {
+  test::write_clip(folder_ / "a.mp4", 40, {VideoKind::Movie, 20.0, 10});
+  std::filesystem::resize_file(folder_ / "a.mp4", std::filesystem::file_size(folder_ / "a.mp4") / 2);
+  const auto source = open_files(folder_ / "a.mp4");
+  EXPECT_FALSE(source->fault()) << "not before the end";
+  EXPECT_GT(look(*source).greys.size(), 10u);
+  EXPECT_TRUE(source->fault());
 }
 
 TEST_F(FileSources, NameWhatIsNotThere) {
