@@ -7,8 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/verbs.h"
+#include "app/evaluation_report.h"
 #include "app/evaluation_results.h"
 #include "app/result_directory.h"
+#include "io/image_files.h"
 
 namespace alidade {
 namespace {
@@ -113,6 +115,9 @@ class EvaluateCommand : public Command {
     ResultDirectory directory(context.output, "evaluate");
     directory.write_text("errors.csv", errors_csv(record));
     directory.write_text("options.yaml", options_.to_yaml());
+    write_image(directory.path("path.png"), draw_paths(record));
+    write_image(directory.path("errors.png"), draw_errors(record));
+    write_report(directory.path("report.html"), report_of(record, context.arguments, options_.to_yaml()));
     directory.commit(summary_of(record));
     context.tell(fmt::format("written to {}", context.output.string()));
   }
