@@ -126,6 +126,7 @@ void VideoReader::State::open() {
   avcodec_parameters_to_context(decoder.get(), stream->codecpar);
   decoder->pkt_timebase = stream->time_base;
   decoder->thread_count = 2;
+  decoder->thread_type = FF_THREAD_SLICE;  // with frame threads, what becomes of a damaged stream depends on timing
   if (const int error = avcodec_open2(decoder.get(), codec, nullptr)) refuse(libav_message(error));
   facts = {stream->codecpar->width, stream->codecpar->height, avcodec_get_name(codec->id),
            positive(stream->avg_frame_rate), std::nullopt};
