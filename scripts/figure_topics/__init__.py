@@ -1,0 +1,6 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The topics of scripts/figures, each a list of sections in the order in which they are measured."""
+
+from figure_topics import main_job
+
+TOPICS = {"main-job": main_job.SECTIONS}
