@@ -13,6 +13,7 @@
 #include "core/errors.h"
 #include "io/atomic_file.h"
 #include "io/image_integrity.h"
+#include "io/jpeg_decoder.h"
 #include "io/text_lines.h"
 
 namespace alidade {
@@ -29,6 +30,11 @@ cv::Mat decode(const std::filesystem::path& path, int flags) {
   const std::string bytes = read_bytes(path);
   if (bytes.empty()) throw InputError(path, 0, "is empty, an image is wanted", "copy the file again");
   if (const auto damage = find_image_damage(bytes)) throw InputError(path, 0, *damage, "copy the file again");
+  if (is_jpeg(bytes)) {
+    const auto jpeg = decode_jpeg(bytes);
+    if (jpeg && jpeg->damage) throw InputError(path, 0, "is a damaged JPEG: " + *jpeg->damage, "copy the file again");
+    if (jpeg) return jpeg->image;
+  }
   const cv::Mat encoded(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
   cv::Mat image;
   try {

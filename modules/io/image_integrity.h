@@ -7,8 +7,8 @@
 
 namespace alidade {
 
-/// Says what is broken about the bytes of an image file where decoders keep silent and paint the missing part grey:
-/// a JPEG without its end or with damaged code, a PNG without its end. Empty where nothing is found; other formats are
+/// Says what is broken about the bytes of an image file where decoders paint the missing part grey or print to stderr:
+/// a JPEG or PNG without its end, a PNG whose checksums do not fit. Empty where nothing is found; other formats are
 /// left to their decoders.
 std::optional<std::string> find_image_damage(std::string_view bytes);
 

@@ -65,6 +65,32 @@ TEST_F(ImageFiles, ThatAreCutOffAreNotReadAsGrey) {
   }
 }
 
+TEST_F(ImageFiles, AreDecodedAsOpenCvDoes) {
+  for (const int type : {CV_8UC1, CV_8UC3}) {
+    write_image(folder_ / "a.jpg", noise(type));
+    const cv::Mat theirs = cv::imread(folder_ / "a.jpg", cv::IMREAD_ANYCOLOR);
+    const cv::Mat ours = read_image(folder_ / "a.jpg");
+    ASSERT_EQ(ours.type(), theirs.type());
+    EXPECT_EQ(cv::norm(ours, theirs, cv::NORM_INF), 0);
+  }
+}
+
+TEST_F(ImageFiles, ThatAreDamagedInTheMiddleAreNotReadAsGarbage) {
+  write_image(folder_ / "a.jpg", noise(CV_8UC3));
+  write_image(folder_ / "a.png", noise(CV_8UC3));
+  std::string jpeg = read_bytes(folder_ / "a.jpg"), png = read_bytes(folder_ / "a.png");
+  jpeg.replace(jpeg.size() / 2, 2, "\xFF\xD3");  // a restart where code should be
+  png[png.size() / 2] ^= 1;
+  folder_.write("b.jpg", jpeg);
+  folder_.write("b.png", png);
+  EXPECT_EQ(message("b.jpg").substr(0, 26), "b.jpg: is a damaged JPEG: ") << message("b.jpg");
+  EXPECT_EQ(message("b.png"), "b.png: is a damaged PNG; copy the file again");
+  jpeg = read_bytes(folder_ / "a.jpg");
+  jpeg.erase(jpeg.size() / 2, 300);
+  folder_.write("b.jpg", jpeg);
+  EXPECT_EQ(message("b.jpg").substr(0, 26), "b.jpg: is a damaged JPEG: ") << message("b.jpg");
+}
+
 TEST_F(ImageFiles, ThatEndInAThumbnailAreStillCutOff) {
   // An APP1 segment of 6 bytes that holds an end-of-image marker, then nothing.
   EXPECT_TRUE(find_image_damage(std::string_view("\xFF\xD8\xFF\xE1\x00\x06\xFF\xD9\x00\x00", 10)));
