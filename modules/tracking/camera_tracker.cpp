@@ -193,12 +193,16 @@ CameraTracker::Attempt CameraTracker::relocalise(const CameraState& predicted, c
   Attempt attempt;
   attempt.used_prior = false;
   attempt.features = features ? std::move(features) : detect_sift(frame.grey, options_.sift);
-  const auto matches = match_points(live_.map, living_, *attempt.features, options_.relocalisation_ratio);
-  const auto observations = as_observations(live_.map, matches, sigma_px_);
   RansacPnpOptions ransac;
   ransac.threshold_px = 4.0 * sigma_px_;
   ransac.least_inliers = options_.least_inliers;
-  const auto pose = solve_pnp_ransac(camera_, observations, ransac);
+  std::vector<FoundPoint> matches;
+  std::optional<RansacPose> pose;
+  for (const std::vector<int>& candidates : {recent_points(), living_}) {  // the likely part of the map first
+    matches = match_points(live_.map, candidates, *attempt.features, options_.relocalisation_ratio);
+    pose = solve_pnp_ransac(camera_, as_observations(live_.map, matches, sigma_px_), ransac);
+    if (pose) break;
+  }
   if (!pose) return attempt;
   for (int i : pose->inliers) attempt.found.push_back(matches[static_cast<std::size_t>(i)]);
   CameraState start = predicted;
@@ -206,6 +210,17 @@ CameraTracker::Attempt CameraTracker::relocalise(const CameraState& predicted, c
   attempt.update = estimate(start, attempt.found, false);
   if (!attempt.update) return attempt;
   return widen(start, std::move(attempt));
+}
+
+std::vector<int> CameraTracker::recent_points() const {
+  std::vector<int> recent;
+  const auto& keyframes = live_.map.keyframes;
+  for (std::size_t k = keyframes.size() > 4 ? keyframes.size() - 4 : 0; k < keyframes.size(); ++k) {
+    for (const Sighting& s : keyframes[k].sightings) recent.push_back(s.point);
+  }
+  std::sort(recent.begin(), recent.end());
+  recent.erase(std::unique(recent.begin(), recent.end()), recent.end());
+  return recent;
 }
 
 // With the pose nearly known, the other points of the map are looked for close to where they must be.

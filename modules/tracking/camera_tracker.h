@@ -84,6 +84,7 @@ class CameraTracker {
   Attempt follow(const CameraState& predicted, const FlowImage& flow) const;
   Attempt search(const CameraState& predicted, const ImageFrame& frame) const;
   Attempt relocalise(const CameraState& predicted, const ImageFrame& frame, std::optional<Features> features) const;
+  std::vector<int> recent_points() const;
   Attempt widen(const CameraState& predicted, Attempt first) const;
   Attempt match_every_descriptor(const CameraState& predicted, const ImageFrame& frame) const;
   std::optional<PoseUpdate> estimate(const CameraState& predicted, const std::vector<FoundPoint>& found,

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "reconstruction/epipolar_matching.h"
+
 namespace alidade {
 namespace {
 
@@ -19,12 +21,6 @@ std::vector<int> free_features(const KeyframeFeatures& frame) {
     if (frame.point_of_feature[i] < 0) free.push_back(static_cast<int>(i));
   }
   return free;
-}
-
-cv::Mat rows_of(const cv::Mat& descriptors, const std::vector<int>& indices) {
-  cv::Mat rows(static_cast<int>(indices.size()), descriptors.cols, descriptors.type());
-  for (std::size_t i = 0; i < indices.size(); ++i) descriptors.row(indices[i]).copyTo(rows.row(static_cast<int>(i)));
-  return rows;
 }
 
 // Keyframes that share points with the last one and look from elsewhere: shared points, less where the baseline is
@@ -95,13 +91,15 @@ std::vector<int> grow_between(const Camera& camera, LiveMap& live, int last, int
   const KeyframeFeatures& b = live.features[static_cast<std::size_t>(other)];
   const std::vector<int> free_a = free_features(a);
   const std::vector<int> free_b = free_features(b);
-  const auto matches = match_descriptors(rows_of(a.features.descriptors, free_a),
-                                         rows_of(b.features.descriptors, free_b), options.ratio);
+  const auto pose = [&](int k) { return live.map.keyframes[static_cast<std::size_t>(k)].T_world_camera; };
+  EpipolarOptions epipolar;
+  epipolar.ratio = options.ratio;
+  const auto matches = match_along_epipolar_lines(camera, {a.features, free_a, pose(last)},
+                                                  {b.features, free_b, pose(other)}, epipolar);
   std::vector<int> grown;
   for (const Match& m : matches) {
-    const FeatureView in_last{last, free_a[static_cast<std::size_t>(m.a)]};
-    const FeatureView in_other{other, free_b[static_cast<std::size_t>(m.b)]};
-    if (const auto point = add_point(camera, live, in_other, in_last, image, options)) grown.push_back(*point);
+    const auto point = add_point(camera, live, {other, m.b}, {last, m.a}, image, options);
+    if (point) grown.push_back(*point);
   }
   return grown;
 }
