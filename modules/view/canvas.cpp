@@ -88,6 +88,13 @@ void Canvas::draw_dashes(std::span<const cv::Point2d> points, const Stroke& stro
   }
 }
 
+void Canvas::fill_polygon(std::span<const cv::Point2d> corners, const Rgb& colour) {
+  std::vector<cv::Point> fixed;
+  for (const auto& p : corners) fixed.push_back(to_fixed(p));
+  if (fixed.size() < 3 || clipped_.empty()) return;
+  cv::fillConvexPoly(clipped_, fixed, to_scalar(colour), cv::LINE_AA, kFractionBits);
+}
+
 void Canvas::draw_disc(cv::Point2d centre, double radius_px, const Rgb& colour) {
   if (clipped_.empty()) return;
   const int radius = static_cast<int>(std::lround(radius_px * supersampling_ * (1 << kFractionBits)));

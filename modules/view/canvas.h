@@ -43,6 +43,8 @@ class Canvas {
 
   void draw_line(cv::Point2d a, cv::Point2d b, const Stroke& stroke);
   void draw_polyline(std::span<const cv::Point2d> points, const Stroke& stroke);
+  /// Convex.
+  void fill_polygon(std::span<const cv::Point2d> corners, const Rgb& colour);
   void draw_disc(cv::Point2d centre, double radius_px, const Rgb& colour);
   void draw_circle(cv::Point2d centre, double radius_px, const Stroke& stroke);
   /// `axes_px`: half lengths; `angle_rad` from x towards y, of the first.
