@@ -84,7 +84,6 @@ VideoWriter::State::~State() {
 }
 
 void VideoWriter::State::check(int result, const char* operation) {
-  if (result >= 0 && output && output->pb) result = output->pb->error;
   if (result >= 0) return;
   const std::string remedy = result == AVERROR(ENOSPC) ? "free some space and run it again" : "";
   throw DeviceError(path, operation, libav_message(result), remedy);
@@ -225,8 +224,6 @@ void VideoWriter::close() {
   if (s.image_type < 0) throw std::invalid_argument("VideoWriter::close: a video needs a frame");
   s.encode(nullptr);
   s.check(av_write_trailer(s.output.get()), "cannot be written");
-  avio_flush(s.output->pb);
-  s.check(0, "cannot be written");
   s.check(avio_closep(&s.output->pb), "cannot be closed");
   commit_part(s.path);
   s.closed = true;

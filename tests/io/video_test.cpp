@@ -4,6 +4,7 @@
 #include "io/text_lines.h"
 #include "io/video_reader.h"
 #include "io/video_writer.h"
+#include "tests/support/file_size_limit.h"
 #include "tests/support/input_error.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/video_clip.h"
@@ -175,6 +176,17 @@ TEST_F(VideoFile, OnAFullDiskIsNotSilentlyShort) {
             folder_.path(),
             [&] { test::write_clip(folder_ / name, 60, std::string_view(name) == "a.mp4" ? kMovie : kLossless); }),
         std::string(name) + ": cannot be written: No space left on device; free some space and run it again");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / name));
+  }
+}
+
+TEST_F(VideoFile, TellsWhenTheDiskFillsHalfWay) {
+  for (const char* name : {"a.mp4", "a.mkv"}) {
+    const test::FileSizeLimit limit(100'000);
+    const bool movie = std::string_view(name) == "a.mp4";
+    EXPECT_EQ(
+        test::message_of(folder_.path(), [&] { test::write_clip(folder_ / name, 150, movie ? kMovie : kLossless); }),
+        std::string(name) + ": cannot be written: File too large");
     EXPECT_FALSE(std::filesystem::exists(folder_ / name));
   }
 }
