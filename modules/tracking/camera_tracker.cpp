@@ -79,12 +79,15 @@ CameraTracker::CameraTracker(Camera camera, CameraTrackerOptions options, std::o
   living_ = living_points(live_.map);
 }
 
-const FrameReport& CameraTracker::step(const ImageFrame& frame) {
+FrameReport CameraTracker::step(const ImageFrame& frame) {
   FlowImage flow = make_flow_image(frame.grey, options_.flow);
   const bool map_is_ready = !live_.map.points.empty();
-  reports_.push_back(map_is_ready ? track(frame, flow) : wait(frame, flow));
+  FrameReport report = map_is_ready ? track(frame, flow) : wait(frame, flow);
   previous_ = std::move(flow);
-  return reports_.back();
+  reports_.push_back(report);  // kept for refinement: the inliers alone
+  reports_.back().expectations.clear();
+  std::erase_if(reports_.back().sightings, [](const FrameSighting& s) { return !s.is_inlier; });
+  return report;
 }
 
 FrameReport CameraTracker::wait(const ImageFrame& frame, const FlowImage& flow) {
@@ -302,18 +305,25 @@ FrameReport CameraTracker::accept(const ImageFrame& frame, const CameraState& pr
   report.covariance = update.covariance;
   report.chi2_per_dof = update.chi2_per_dof;
   report.sigma_px = sigma_px_;
-  const PoseBelief belief = belief_of(predicted.T_world_camera, predicted.covariance.topLeftCorner<6, 6>());
   for (std::size_t i = 0; i < attempt.found.size(); ++i) {
-    const FoundPoint& f = attempt.found[i];
-    const auto expected =
-        expect(camera_, belief, live_.map.points[static_cast<std::size_t>(f.point)], sigma_px_);
-    report.sightings.push_back({f.point, f.pixel, expected ? expected->pixel : f.pixel,
-                                expected && continues ? expected->S : Eigen::Matrix2d::Zero(), update.is_inlier[i]});
+    report.sightings.push_back({attempt.found[i].point, attempt.found[i].pixel, update.is_inlier[i]});
   }
+  if (continues) report.expectations = expectations(predicted, attempt.found);
   state_ = next;
   has_pose_ = true;
   missed_ = 0;
   return report;
+}
+
+std::vector<FrameExpectation> CameraTracker::expectations(const CameraState& predicted,
+                                                          const std::vector<FoundPoint>& found) const {
+  const PoseBelief belief = belief_of(predicted.T_world_camera, predicted.covariance.topLeftCorner<6, 6>());
+  std::vector<FrameExpectation> result;
+  for (const FoundPoint& f : found) {
+    const auto expected = expect(camera_, belief, live_.map.points[static_cast<std::size_t>(f.point)], sigma_px_);
+    result.push_back(expected ? FrameExpectation{expected->pixel, expected->S} : FrameExpectation{f.pixel, {}});
+  }
+  return result;
 }
 
 FrameReport CameraTracker::lose(const ImageFrame& frame, const CameraState& predicted) {

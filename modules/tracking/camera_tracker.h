@@ -56,8 +56,9 @@ class CameraTracker {
   CameraTracker(Camera camera, CameraTrackerOptions options, std::optional<PointMap> known_map = std::nullopt,
                 Trajectory given_poses = {});
 
-  /// Takes the next image. The report is also kept in reports(), where a later start may amend it.
-  const FrameReport& step(const ImageFrame& frame);
+  /// Takes the next image. The report is also kept in reports(), without its outliers and expectations; there a later
+  /// start may give poses to frames that waited.
+  FrameReport step(const ImageFrame& frame);
 
   const std::vector<FrameReport>& reports() const { return reports_; }
   const LiveMap& live_map() const { return live_; }
@@ -92,6 +93,7 @@ class CameraTracker {
   bool is_believable(const Attempt& attempt) const;
 
   FrameReport accept(const ImageFrame& frame, const CameraState& predicted, Attempt attempt);
+  std::vector<FrameExpectation> expectations(const CameraState& predicted, const std::vector<FoundPoint>& found) const;
   FrameReport lose(const ImageFrame& frame, const CameraState& predicted);
   bool keyframe_is_due(const Attempt& attempt) const;
   void add_keyframe(const ImageFrame& frame, const CameraState& predicted, Attempt& attempt);

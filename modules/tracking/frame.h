@@ -27,13 +27,17 @@ enum class FrameState {
   Lost,       ///< neither; it is looked for in the map at every further frame
 };
 
-/// A map point in a frame: where it was expected and where it was found.
+/// A map point found in a frame.
 struct FrameSighting {
   int point = -1;
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
-  Eigen::Vector2d expected = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d expected_covariance = Eigen::Matrix2d::Zero();  ///< px²
   bool is_inlier = false;
+};
+
+/// Where a map point was expected before it was looked for.
+struct FrameExpectation {
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of the innovation, px²
 };
 
 /// The tracker's word on one frame.
@@ -49,6 +53,7 @@ struct FrameReport {
   double sigma_px = 1;  ///< measurement noise in use
   bool is_keyframe = false;
   std::vector<FrameSighting> sightings;
+  std::vector<FrameExpectation> expectations;  ///< one per sighting, or none (a first sight, a report of long ago)
 
   bool has_pose() const { return state == FrameState::Tracked || state == FrameState::Predicted; }
 };

@@ -41,18 +41,6 @@ std::vector<int> best_neighbours(const PointMap& map, int last, int count) {
   return chosen;
 }
 
-std::array<std::uint8_t, 3> colour_at(const cv::Mat& image, const Eigen::Vector2d& pixel) {
-  if (image.empty()) return {128, 128, 128};
-  const int x = std::clamp(static_cast<int>(std::lround(pixel.x())), 0, image.cols - 1);
-  const int y = std::clamp(static_cast<int>(std::lround(pixel.y())), 0, image.rows - 1);
-  if (image.type() == CV_8UC1) {
-    const auto v = image.at<std::uint8_t>(y, x);
-    return {v, v, v};
-  }
-  const auto& bgr = image.at<cv::Vec3b>(y, x);
-  return {bgr[2], bgr[1], bgr[0]};
-}
-
 void add_sighting(LiveMap& live, const FeatureView& view, int point, double sigma_px) {
   const auto k = static_cast<std::size_t>(view.keyframe);
   const auto f = static_cast<std::size_t>(view.feature);
@@ -105,6 +93,18 @@ std::vector<int> grow_between(const Camera& camera, LiveMap& live, int last, int
 }
 
 }  // namespace
+
+std::array<std::uint8_t, 3> colour_at(const cv::Mat& image, const Eigen::Vector2d& pixel) {
+  if (image.empty()) return {128, 128, 128};
+  const int x = std::clamp(static_cast<int>(std::lround(pixel.x())), 0, image.cols - 1);
+  const int y = std::clamp(static_cast<int>(std::lround(pixel.y())), 0, image.rows - 1);
+  if (image.type() == CV_8UC1) {
+    const auto v = image.at<std::uint8_t>(y, x);
+    return {v, v, v};
+  }
+  const auto& bgr = image.at<cv::Vec3b>(y, x);
+  return {bgr[2], bgr[1], bgr[0]};
+}
 
 LiveMap with_keyframe(LiveMap live, NewKeyframe added, double sigma_px) {
   KeyframeFeatures frame;

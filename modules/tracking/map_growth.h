@@ -17,6 +17,9 @@ struct GrowthOptions {
   double sigma_px = 1.0;             ///< of a SIFT feature
 };
 
+/// The colour (RGB) of an 8-bit image, grey or BGR, at the pixel nearest to `pixel`; grey for an empty image.
+std::array<std::uint8_t, 3> colour_at(const cv::Mat& image, const Eigen::Vector2d& pixel);
+
 /// Appends a keyframe: its pose, its features, and the map points found in it.
 struct NewKeyframe {
   Keyframe keyframe;

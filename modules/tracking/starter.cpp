@@ -150,7 +150,7 @@ std::vector<FrameReport> MapStarter::locate_waiting(const LiveMap& live) const {
       if (point < 0 || !waiting.pixels[f]) continue;
       const MapPoint& p = live.map.points[static_cast<std::size_t>(point)];
       observations.push_back({*waiting.pixels[f], options_.sigma_px, p.p_world, p.covariance_world});
-      report.sightings.push_back({point, *waiting.pixels[f], *waiting.pixels[f], Eigen::Matrix2d::Zero(), false});
+      report.sightings.push_back({point, *waiting.pixels[f], false});
     }
     PosePrior prior;
     const double fraction = to_seconds(report.time - a.time) / to_seconds(b.time - a.time);
