@@ -16,6 +16,7 @@ namespace alidade {
 namespace {
 
 constexpr double kSevenScenesRateHz = 30.0;
+constexpr std::int64_t kMostFrames = 1'000'000'000;  // a year; beyond it the name holds a date or the like
 
 void require_columns(const std::filesystem::path& path, const TextRow& row, std::size_t columns,
                      std::string_view what) {
@@ -43,7 +44,7 @@ std::int64_t frame_number(const std::filesystem::path& path) {
   const std::size_t first = before == std::string::npos ? 0 : before + 1;
   std::int64_t number = 0;
   if (last == std::string::npos ||
-      std::from_chars(name.data() + first, name.data() + last + 1, number).ec != std::errc()) {
+      std::from_chars(name.data() + first, name.data() + last + 1, number).ec != std::errc() || number > kMostFrames) {
     throw InputError(path.string(), 0, "has no frame number in its name", "name pose files like frame-000012.pose.txt");
   }
   return number;
