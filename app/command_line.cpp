@@ -21,6 +21,10 @@ std::vector<std::string> flag_names(const CLI::App& app) {
   return names;
 }
 
+std::vector<std::string_view> views(const std::vector<std::string>& names) {
+  return {names.begin(), names.end()};
+}
+
 std::vector<std::string> verb_names(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::App* verb : app.get_subcommands(nullptr)) names.push_back(verb->get_name());
@@ -47,10 +51,11 @@ InputError explain(const CLI::App& app, const CLI::ParseError& error) {
   const auto is_flag = [](const std::string& word) { return word.size() > 1 && word.front() == '-'; };
   const auto flag = std::find_if(rest.begin(), rest.end(), is_flag);
   if (!verbs.empty() && !rest.empty() && !is_flag(rest.front()))
-    return {name, 0, fmt::format("unknown verb '{}'", rest.front()), suggest_name(rest.front(), verbs)};
+    return {name, 0, fmt::format("unknown verb '{}'", rest.front()), suggest_name(rest.front(), views(verbs))};
   if (flag != rest.end()) {
     const std::string typed = flag->substr(0, flag->find('='));
-    const auto nearest = nearest_name(typed, flag_names(asked));
+    const std::vector<std::string> flags = flag_names(asked);
+    const auto nearest = nearest_name(typed, views(flags));
     return {name, 0, fmt::format("unknown flag '{}'", typed),
             nearest ? fmt::format("did you mean '{}'?", *nearest) : help};
   }

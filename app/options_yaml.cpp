@@ -184,8 +184,8 @@ void OptionFields::add_flags(CLI::App& app) {
   }
 }
 
-std::vector<std::string> OptionFields::names() const {
-  std::vector<std::string> names;
+std::vector<std::string_view> OptionFields::names() const {
+  std::vector<std::string_view> names;
   for (const Field& field : fields_) names.push_back(field.name);
   return names;
 }

@@ -64,7 +64,7 @@ class OptionFields {
   void add_named(std::string name, std::vector<std::string> names, std::string help, std::function<void(int)> set,
                  std::function<int()> get);
   void set_from_file(const std::string& path, int line, const std::string& name, const std::string& text);
-  std::vector<std::string> names() const;
+  std::vector<std::string_view> names() const;
 
   std::deque<Field> fields_;  // stable addresses: the flags refer to them
   std::vector<std::function<void()>> checks_;

@@ -31,20 +31,20 @@ int edit_distance(std::string_view a, std::string_view b) {
   return last[b.size()];
 }
 
-std::optional<std::string> nearest_name(std::string_view word, std::span<const std::string> known) {
+std::optional<std::string> nearest_name(std::string_view word, std::span<const std::string_view> known) {
   std::optional<std::string> nearest;
   int fewest = 0;
-  for (const std::string& name : known) {
+  for (const std::string_view name : known) {
     const int edits = edit_distance(word, name);
     const auto allowed = std::max<std::size_t>(1, std::max(word.size(), name.size()) / 3);
     if (static_cast<std::size_t>(edits) > allowed || (nearest && edits >= fewest)) continue;
-    nearest = name;
+    nearest = std::string(name);
     fewest = edits;
   }
   return nearest;
 }
 
-std::string suggest_name(std::string_view word, std::span<const std::string> known) {
+std::string suggest_name(std::string_view word, std::span<const std::string_view> known) {
   if (const auto nearest = nearest_name(word, known)) return fmt::format("did you mean '{}'?", *nearest);
   if (known.empty()) return "";
   return fmt::format("known are: {}", fmt::join(known, ", "));

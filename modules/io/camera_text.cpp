@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "core/errors.h"
+#include "core/nearest_name.h"
 #include "io/camera_records.h"
-#include "io/nearest_name.h"
 
 namespace alidade {
 namespace {

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "io/nearest_name.h"
+#include "core/nearest_name.h"
 #include "io/text_lines.h"
 
 namespace alidade {
@@ -81,10 +81,7 @@ std::size_t Table::column(std::string_view name) const {
   const auto found = std::find(columns_.begin(), columns_.end(), name);
   if (found != columns_.end()) return static_cast<std::size_t>(found - columns_.begin());
   const std::vector<std::string_view> known(columns_.begin(), columns_.end());
-  const std::string_view nearest = nearest_name(name, known);
-  throw InputError(path_, 0, fmt::format("has no column '{}'", name),
-                   nearest.empty() ? fmt::format("its columns are: {}", fmt::join(known, ", "))
-                                   : fmt::format("is it '{}'?", nearest));
+  throw InputError(path_, 0, fmt::format("has no column '{}'", name), suggest_name(name, known));
 }
 
 double Table::number(std::size_t row, std::size_t column) const {

@@ -8,7 +8,7 @@
 namespace alidade {
 namespace {
 
-const std::vector<std::string> kVerbs = {"track", "map", "evaluate"};
+const std::vector<std::string_view> kVerbs = {"track", "map", "evaluate"};
 
 TEST(EditDistance, CountsInsertionsReplacementsAndSwaps) {
   EXPECT_EQ(edit_distance("gate", "gate"), 0);

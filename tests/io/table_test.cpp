@@ -44,8 +44,8 @@ TEST_F(TableFile, NamesTheCellThatIsNoNumber) {
   EXPECT_EQ(message([&] { table.number(0, 0); }), "t.csv:2: column 'x_m': 'abc' is not a finite number");
   EXPECT_EQ(message([&] { table.integer(0, 1); }), "t.csv:2: column 't_ns': '1.5' is not a whole number");
   EXPECT_EQ(message([&] { table.number(1, 0); }), "t.csv:3: column 'x_m': 'nan' is not a finite number");
-  EXPECT_EQ(message([&] { table.column("t_us"); }), "t.csv: has no column 't_us'; is it 't_ns'?");
-  EXPECT_EQ(message([&] { table.column("colour"); }), "t.csv: has no column 'colour'; its columns are: x_m, t_ns");
+  EXPECT_EQ(message([&] { table.column("t_us"); }), "t.csv: has no column 't_us'; did you mean 't_ns'?");
+  EXPECT_EQ(message([&] { table.column("colour"); }), "t.csv: has no column 'colour'; known are: x_m, t_ns");
 }
 
 TEST_F(TableFile, GivesBackWhatTheWriterWrote) {
