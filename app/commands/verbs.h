@@ -11,6 +11,8 @@ namespace alidade {
 /// here and listed in verbs.cpp.
 std::vector<Verb> all_verbs();
 
+Verb track_camera_verb();
+Verb map_verb();
 Verb evaluate_verb();
 
 }  // namespace alidade

@@ -55,6 +55,8 @@ void require(bool holds, const char* field, double value, const char* bound) {
 
 }  // namespace
 
+int suggested_feature_count(const Camera& camera) { return std::clamp(camera.width * camera.height / 150, 1000, 6000); }
+
 void validate(const CameraTrackerOptions& o) {
   require(o.sigma_px > 0, "sigma_px", o.sigma_px, "> 0 px");
   require(o.sift.most >= 50, "sift.most", o.sift.most, ">= 50");

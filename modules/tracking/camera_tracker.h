@@ -44,6 +44,9 @@ struct CameraTrackerOptions {
   double relocalisation_ratio = 0.8;  ///< of descriptor distances
 };
 
+/// Features per keyframe for images of this size: one per 150 px², 1000 to 6000.
+int suggested_feature_count(const Camera& camera);
+
 /// Throws std::invalid_argument naming the field, its value and the bound.
 void validate(const CameraTrackerOptions& options);
 

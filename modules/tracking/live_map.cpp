@@ -60,6 +60,23 @@ std::vector<int> living_points(const PointMap& map) {
   return living;
 }
 
+PointMap without_unseen_points(PointMap map) {
+  if (map.keyframes.empty()) return map;
+  const auto views = index_views(map);
+  std::vector<int> new_index(map.points.size(), -1);
+  std::vector<MapPoint> seen;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (views[i].empty()) continue;
+    new_index[i] = static_cast<int>(seen.size());
+    seen.push_back(map.points[i]);
+  }
+  map.points = std::move(seen);
+  for (Keyframe& keyframe : map.keyframes) {
+    for (Sighting& s : keyframe.sightings) s.point = new_index[static_cast<std::size_t>(s.point)];
+  }
+  return map;
+}
+
 double median_depth(const PointMap& map, int k) {
   const Keyframe& keyframe = map.keyframes[static_cast<std::size_t>(k)];
   if (keyframe.sightings.empty()) return 0.0;

@@ -39,6 +39,9 @@ std::vector<int> shared_points(const PointMap& map, int k);
 /// Points that have at least two sightings, or all where the map has no keyframes (a loaded map).
 std::vector<int> living_points(const PointMap& map);
 
+/// The map without the points that no keyframe sees any more, the others renumbered.
+PointMap without_unseen_points(PointMap map);
+
 /// Median depth of the points that a keyframe sees, m; 0 where it sees none.
 double median_depth(const PointMap& map, int keyframe);
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/refinement.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
 
@@ -20,6 +23,13 @@ std::vector<int> all_keyframes(const PointMap& map) {
 }
 
 }  // namespace
+
+std::optional<std::string> doubt_focal_length(const Camera& camera, const RefinementSummary& summary) {
+  const double off = std::abs(summary.focal_factor - 1.0);
+  if (off < 0.04 || off < 5.0 * summary.focal_factor_sigma) return std::nullopt;
+  return fmt::format("the images do not fit the camera's focal length of {:.1f} px; {:.1f} px fits: calibrate the camera again",
+                     camera.fx, camera.fx * summary.focal_factor);
+}
 
 RefinedTrack refine_globally(const Camera& camera, LiveMap live, std::vector<FrameReport> reports,
                              const CameraTrackerOptions& options, int anchored) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "camera/camera.h"
@@ -21,6 +23,10 @@ struct RefinementSummary {
   double focal_factor = 1.0;        ///< the factor on the focal length that would fit best
   double focal_factor_sigma = 0.0;
 };
+
+/// One line for the user where the images speak clearly against the camera's focal length (more than 4 % and five
+/// standard deviations), with the one that fits; empty where they do not.
+std::optional<std::string> doubt_focal_length(const Camera& camera, const RefinementSummary& summary);
 
 struct RefinedTrack {
   LiveMap live;
