@@ -8,13 +8,11 @@
 #include <system_error>
 #include <vector>
 
-#include <fcntl.h>
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 #include "app/version.h"
 #include "core/errors.h"
+#include "io/atomic_file.h"
 
 namespace alidade {
 namespace {
@@ -50,20 +48,6 @@ bool holds_only_part(const fs::path& directory) {
                              : error == EACCES || error == EROFS ? "give -o a directory that you may write"
                                                                  : "";
   throw DeviceError(path.string(), operation, std::strerror(error), remedy);
-}
-
-void write_all(const fs::path& path, std::string_view text) {
-  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (file < 0) refused(path, "create", errno);
-  int error = 0;
-  while (!text.empty() && error == 0) {
-    const ssize_t written = write(file, text.data(), text.size());
-    if (written >= 0) text.remove_prefix(static_cast<std::size_t>(written));
-    if (written < 0 && errno != EINTR) error = errno;
-  }
-  if (error == 0 && fsync(file) != 0 && errno != EINVAL) error = errno;
-  if (close(file) != 0 && error == 0) error = errno;
-  if (error != 0) refused(path, "write", error);
 }
 
 }  // namespace
@@ -105,7 +89,7 @@ fs::path ResultDirectory::path(const std::string& name) const {
 }
 
 void ResultDirectory::write_text(const std::string& name, std::string_view text) const {
-  write_all(path(name), text);
+  write_file(path(name), text);
 }
 
 void ResultDirectory::commit(nlohmann::json summary) {
