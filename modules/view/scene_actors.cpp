@@ -155,6 +155,7 @@ vtkSmartPointer<vtkTexture> make_texture(const cv::Mat& bgr) {
   texture->SetInputData(image);
   texture->InterpolateOn();
   texture->MipmapOn();
+  texture->SetMaximumAnisotropicFiltering(1.0F);
   texture->RepeatOff();
   texture->EdgeClampOn();
   return texture;
