@@ -196,8 +196,8 @@ std::optional<VideoFrame> VideoReader::State::convert() {
     scaler_format = frame->format;
     if (!scaler) refuse("its pixel format is not supported");
     result.image.create(frame->height, frame->width, CV_8UC3);
-    std::uint8_t* const rows[] = {result.image.data};
-    const int steps[] = {static_cast<int>(result.image.step)};
+    std::uint8_t* const rows[4] = {result.image.data};
+    const int steps[4] = {static_cast<int>(result.image.step)};
     sws_scale(scaler.get(), frame->data, frame->linesize, 0, frame->height, rows, steps);
   }
   if (const std::int64_t time = frame->best_effort_timestamp; time != AV_NOPTS_VALUE) {

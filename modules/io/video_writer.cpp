@@ -104,6 +104,7 @@ void VideoWriter::State::open_encoder(AVPixelFormat format) {
     if (codec->id == AV_CODEC_ID_H264) {
       av_opt_set(encoder->priv_data, "preset", "veryfast", 0);
       av_opt_set_int(encoder->priv_data, "crf", options.rate_factor, 0);
+      av_opt_set_int(encoder->priv_data, "mbtree", 0, 0);  // Debian's x264 gives other bytes from run to run with it
     } else {
       encoder->flags |= AV_CODEC_FLAG_QSCALE;
       encoder->global_quality = FF_QP2LAMBDA * std::max(1, options.rate_factor / 6);
@@ -121,6 +122,7 @@ void VideoWriter::State::open_encoder(AVPixelFormat format) {
 
 void VideoWriter::State::open_file() {
   check(avio_open(&output->pb, output->url, AVIO_FLAG_WRITE), "cannot be created");
+  output->flags |= AVFMT_FLAG_BITEXACT;  // no random numbers and no dates in the file
   if (!is_movie()) output->flags |= AVFMT_FLAG_FLUSH_PACKETS;
 }
 
@@ -166,8 +168,8 @@ void VideoWriter::State::fill_frame(const cv::Mat& image) {
     sws_setColorspaceDetails(scaler.get(), sws_getCoefficients(SWS_CS_DEFAULT), 1, sws_getCoefficients(SWS_CS_ITU709),
                              is_movie() ? 0 : 1, 0, 1 << 16, 1 << 16);
   }
-  const std::uint8_t* const rows[] = {padded.data};
-  const int steps[] = {static_cast<int>(padded.step)};
+  const std::uint8_t* const rows[4] = {padded.data};
+  const int steps[4] = {static_cast<int>(padded.step)};
   sws_scale(scaler.get(), rows, steps, 0, frame->height, frame->data, frame->linesize);
 }
 

@@ -87,6 +87,16 @@ TEST_F(VideoFile, GivesTheSamePixelsEveryTime) {
   }
 }
 
+TEST_F(VideoFile, OfTheSameFramesHasTheSameBytes) {
+  for (const VideoOptions& options : {kMovie, kLossless}) {
+    test::write_clip(folder_ / "first", 40, options);
+    for (int i = 0; i < 10; ++i) {
+      test::write_clip(folder_ / "again", 40, options);
+      ASSERT_TRUE(read_bytes(folder_ / "first") == read_bytes(folder_ / "again")) << "writing " << i;
+    }
+  }
+}
+
 TEST_F(VideoFile, OfOddSizeIsPaddedInAMovie) {
   test::write_clip(folder_ / "a.mp4", 3, kMovie, {63, 47});
   EXPECT_EQ(look("a.mp4").frames.at(2).image.size(), cv::Size(64, 48));
@@ -127,7 +137,7 @@ TEST_F(VideoFile, ThatIsDamagedInTheMiddleGivesTheRestAndSaysSo) {
 TEST_F(VideoFile, OfAMovieDamagedInTheMiddleSaysSo) {
   test::write_clip(folder_ / "a.mp4", 50, kMovie);
   std::string bytes = read_bytes(folder_ / "a.mp4");
-  for (std::size_t i = 0; i < 400; ++i) bytes[bytes.size() / 2 + i] = static_cast<char>(i * 37);
+  for (std::size_t i = 0; i < 4000; ++i) bytes[bytes.size() / 2 + i] = static_cast<char>(i * 37);
   folder_.write("a.mp4", bytes);
   const Seen seen = look("a.mp4");
   EXPECT_GE(seen.frames.size(), 20u);
