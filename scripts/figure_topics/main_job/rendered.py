@@ -16,6 +16,7 @@ from figure_topics.images import write_black
 
 BLACK_FRAMES = 40
 PERCENT = 100.0
+FRAME_A, FRAME_B = 0, 60  # whose distance is told
 
 
 def measure_demo(bench):
@@ -115,15 +116,25 @@ def scale_error_percent(bench, scene, name, *words):
     return PERCENT * abs(bench.evaluate(out / "trajectory.tum", scene / "truth.tum", "--align", "sim3")["scale"] - 1)
 
 
+def distance_m(trajectory, a, b):
+    """Between the camera centres of two frames of a TUM file."""
+    with open(trajectory, encoding="utf-8") as file:
+        centres = [[float(word) for word in line.split()[1:4]] for line in file if not line.startswith("#")]
+    return math.dist(centres[a], centres[b])
+
+
 def measure_scale(bench):
     scene = bench.scene()
     yield "scale/init-poses", scale_error_percent(bench, scene, "scale/init-poses", "--init-poses", scene / "truth.tum")
+    distance = f"distance:{FRAME_A}:{FRAME_B}:{distance_m(scene / 'truth.tum', FRAME_A, FRAME_B):.9g}"
+    yield "scale/distance", scale_error_percent(bench, scene, "scale/distance", "--scale", distance)
     marked = bench.scene("scene-marker", "--marker")
     yield "scale/marker", scale_error_percent(bench, marked, "scale/marker", "--scale", "marker:0.2")
 
 
 SCALE = Section("scale", [
     Figure("scale/init-poses", "%", at_most=0.5),
+    Figure("scale/distance", "%", at_most=0.5),
     Figure("scale/marker", "%", at_most=0.5),
 ], measure_scale)
 
