@@ -68,8 +68,10 @@ class PoseProblem {
                             Matrix6d& information) const {
     for (int step = 0; step < steps; ++step) {
       const Vector6d from_prior = difference(prior_.T_world_camera, T);
-      Matrix6d A = prior_.information;
-      Vector6d b = -prior_.information * from_prior;
+      const Matrix6d J_prior = prior_jacobian(T, from_prior);
+      const Matrix6d JtI = J_prior.transpose() * prior_.information;
+      Matrix6d A = JtI * J_prior;
+      Vector6d b = -JtI * from_prior;
       for (std::size_t i = 0; i < size(); ++i) {
         if (!active[i]) continue;
         const auto l = linearise(T, i);
@@ -113,6 +115,14 @@ class PoseProblem {
   }
 
  private:
+  // How the difference from the prior moves with xi: the pose's axes have turned away from the prior's.
+  Matrix6d prior_jacobian(const Eigen::Isometry3d& T, const Vector6d& from_prior) const {
+    Matrix6d J = Matrix6d::Zero();
+    J.topLeftCorner<3, 3>() = prior_.T_world_camera.linear().transpose() * T.linear();
+    J.bottomRightCorner<3, 3>() = right_jacobian_so3(from_prior.tail<3>()).inverse();
+    return J;
+  }
+
   Matrix6d prior_covariance() const {
     // A prior that knows nothing gates nothing: a tiny information keeps the inverse finite.
     const Matrix6d I = prior_.information + 1e-9 * Matrix6d::Identity();

@@ -34,9 +34,9 @@ struct PoseUpdate {
 };
 
 /// The maximum a posteriori pose from a prior and sightings of map points: iterated update in information form, O(n) in
-/// the number of observations. Observations outside the gate about the prior are left out; the rest pass a redescending
-/// weight (Geman–McClure, graduated) before the inliers alone give pose and covariance. Empty where fewer than
-/// least_inliers remain or the pose is not determined.
+/// the number of observations. Observations inside the gate about the prior pass a redescending weight (Geman–McClure,
+/// graduated); all that fit the pose found so give pose and covariance. Empty where fewer than least_inliers pass the
+/// gate or fit, or where the pose is not determined.
 /// Source: camera-tracker paper eqs. 8–13 in error-state, information form; R_i as in options.
 std::optional<PoseUpdate> update_pose(const Camera& camera, const PosePrior& prior,
                                       std::span<const PointObservation> observations,
