@@ -2,6 +2,7 @@
 #include "reconstruction/bundle_adjustment.h"
 
 #include <ceres/ceres.h>
+#include <fmt/format.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -133,13 +134,28 @@ Blocks gather_blocks(const PointMap& map) {
   return blocks;
 }
 
+void require_indices(const PointMap& map, const BundleOptions& options) {
+  const auto require = [](int index, std::size_t count, const char* what) {
+    if (index >= 0 && static_cast<std::size_t>(index) < count) return;
+    throw std::invalid_argument(fmt::format("adjust_bundle: {} {} of {}", what, index, count));
+  };
+  for (const auto* list : {&options.free_keyframes, &options.fixed_keyframes}) {
+    for (int k : *list) {
+      require(k, map.keyframes.size(), "keyframe");
+      for (const Sighting& s : map.keyframes[static_cast<std::size_t>(k)].sightings) {
+        require(s.point, map.points.size(), "point");
+      }
+    }
+  }
+}
+
 std::vector<bool> adjustable_points(const PointMap& map, const BundleOptions& options) {
   std::vector<int> seen(map.points.size(), 0);
   std::vector<bool> moves(map.points.size(), false);
   for (const auto* list : {&options.free_keyframes, &options.fixed_keyframes}) {
     for (int k : *list) {
-      for (const Sighting& s : map.keyframes.at(static_cast<std::size_t>(k)).sightings) {
-        ++seen.at(static_cast<std::size_t>(s.point));
+      for (const Sighting& s : map.keyframes[static_cast<std::size_t>(k)].sightings) {
+        ++seen[static_cast<std::size_t>(s.point)];
         if (list == &options.free_keyframes) moves[static_cast<std::size_t>(s.point)] = true;
       }
     }
@@ -212,6 +228,7 @@ double focal_sigma(double focal_factor, double cost_before, double cost_after) {
 }  // namespace
 
 BundleResult adjust_bundle(const Camera& camera, PointMap map, const BundleOptions& options) {
+  require_indices(map, options);
   const std::vector<bool> moves = adjustable_points(map, options);
   BundleResult result;
   result.rms_px_before = rms_px(camera, map, options, moves);

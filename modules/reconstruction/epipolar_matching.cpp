@@ -11,10 +11,11 @@
 namespace alidade {
 namespace {
 
-using NormalisedPixels = Eigen::Matrix3Xf;  // homogeneous; a column of zeros where the lens model has no answer
+using NormalisedPixels = Eigen::Matrix3Xf;  // homogeneous; NaN where the lens model has no answer: in no band
 
 NormalisedPixels normalise(const Camera& camera, const PosedFeatures& image) {
-  NormalisedPixels x = NormalisedPixels::Zero(3, static_cast<Eigen::Index>(image.subset.size()));
+  NormalisedPixels x(3, static_cast<Eigen::Index>(image.subset.size()));
+  x.setConstant(std::numeric_limits<float>::quiet_NaN());
   for (std::size_t i = 0; i < image.subset.size(); ++i) {
     const auto xy = undistort(camera, image.features.pixels[static_cast<std::size_t>(image.subset[i])]);
     if (xy) x.col(static_cast<Eigen::Index>(i)) << xy->cast<float>(), 1.0f;
@@ -38,7 +39,7 @@ std::vector<int> nearest_in_band(const PosedFeatures& a, const NormalisedPixels&
       float best = std::numeric_limits<float>::max();
       float second = best;
       for (Eigen::Index j = 0; j < off.cols(); ++j) {
-        if (std::abs(off(j)) > limit) continue;
+        if (!(std::abs(off(j)) <= limit)) continue;
         const int feature = b.subset[static_cast<std::size_t>(j)];
         const float d = cv::hal::normL2Sqr_(row, b.features.descriptors.ptr<float>(feature), 128);
         if (d < best) {

@@ -2,6 +2,7 @@
 #include "reconstruction/resection.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <opencv2/calib3d.hpp>
 
@@ -32,6 +33,17 @@ Correspondences gather(const Camera& camera, std::span<const PointObservation> o
 
 cv::Matx33d pinhole(const Camera& c) { return {c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1}; }
 
+// Points on one line, or in one place, leave a turn open; OpenCV answers nevertheless.
+bool lie_on_one_line(const std::vector<cv::Point3d>& points) {
+  Eigen::Matrix3Xd p(3, static_cast<Eigen::Index>(points.size()));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    p.col(static_cast<Eigen::Index>(i)) << points[i].x, points[i].y, points[i].z;
+  }
+  p.colwise() -= p.rowwise().mean().eval();
+  const Eigen::Vector3d spread = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(p * p.transpose()).eigenvalues();
+  return !(spread(1) > 1e-10 * spread(2));
+}
+
 std::optional<Eigen::Isometry3d> as_pose(const cv::Vec3d& rotation, const cv::Vec3d& translation) {
   Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();
   T_camera_world.linear() = exp_so3(Eigen::Vector3d(rotation[0], rotation[1], rotation[2]));
@@ -45,7 +57,7 @@ std::optional<Eigen::Isometry3d> as_pose(const cv::Vec3d& rotation, const cv::Ve
 std::optional<Eigen::Isometry3d> solve_pnp(const Camera& camera, std::span<const PointObservation> observations,
                                            PnpMethod method) {
   const Correspondences c = gather(camera, observations);
-  if (c.object.size() < 6) return std::nullopt;
+  if (c.object.size() < 6 || lie_on_one_line(c.object)) return std::nullopt;
   cv::Vec3d rotation, translation;
   const int flag = method == PnpMethod::Sqpnp ? cv::SOLVEPNP_SQPNP : cv::SOLVEPNP_EPNP;
   try {
@@ -55,7 +67,7 @@ std::optional<Eigen::Isometry3d> solve_pnp(const Camera& camera, std::span<const
     if (method == PnpMethod::EpnpLm) {
       cv::solvePnPRefineLM(c.object, c.image, pinhole(camera), cv::noArray(), rotation, translation);
     }
-  } catch (const cv::Exception&) {  // degenerate sets, e.g. all points in one place
+  } catch (const cv::Exception&) {  // other degenerate sets
     return std::nullopt;
   }
   return as_pose(rotation, translation);

@@ -15,8 +15,8 @@ namespace alidade {
 enum class PnpMethod { Epnp, EpnpLm, Sqpnp };
 
 /// Pose of a calibrated camera from map points, all of them taken as inliers and weighted alike (OpenCV's solvePnP).
-/// Empty below six observations or where the method fails. Sources: Lepetit et al. 2009 (EPnP); Terzakis and Lourakis
-/// 2020 (SQPnP); LM: Levenberg–Marquardt on the reprojection error from EPnP's pose.
+/// Empty below six observations, where all points lie on one line or where the method fails. Sources: Lepetit et al.
+/// 2009 (EPnP); Terzakis and Lourakis 2020 (SQPnP); LM: Levenberg–Marquardt on the reprojection error from EPnP's pose.
 std::optional<Eigen::Isometry3d> solve_pnp(const Camera& camera, std::span<const PointObservation> observations,
                                            PnpMethod method);
 
