@@ -29,6 +29,7 @@ void bind(OptionFields& fields, CameraTrackerOptions& o) {
   fields.add("least_inliers", o.least_inliers, "", "points without which no pose is believed");
   fields.add("keyframe_share", o.keyframe_share, "", "of the last keyframe's points still followed: below it a new one");
   fields.add("keyframe_parallax_deg", o.keyframe_parallax_deg, "deg", "turn of the median ray: beyond it a new one");
+  fields.add("anchor_every", o.anchor_every, "", "in a known map: frames after which flow is corrected by features");
   fields.add("most_predicted", o.most_predicted, "", "frames without measurement before the camera counts as lost");
   fields.add("window", o.window, "", "keyframes that local refinement moves");
 }

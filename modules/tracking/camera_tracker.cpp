@@ -55,7 +55,7 @@ void require(bool holds, const char* field, double value, const char* bound) {
 
 }  // namespace
 
-int suggested_feature_count(const Camera& camera) { return std::clamp(camera.width * camera.height / 150, 1000, 6000); }
+int suggested_feature_count(const Camera& camera) { return std::clamp(camera.width * camera.height / 100, 1000, 6000); }
 
 void validate(const CameraTrackerOptions& o) {
   require(o.sigma_px > 0, "sigma_px", o.sigma_px, "> 0 px");
@@ -174,8 +174,10 @@ CameraTracker::Attempt CameraTracker::follow(const CameraState& predicted, const
   for (std::size_t i = 0; i < followed.size(); ++i) {
     if (followed[i]) attempt.found.push_back({tracks_[i].point, -1, *followed[i]});
   }
-  if (attempt.found.size() < std::max<std::size_t>(30, tracks_.size() / 4)) return {};
+  const double fewest = std::max(30.0, options_.least_flow_share * static_cast<double>(tracks_.size()));
+  if (static_cast<double>(attempt.found.size()) < fewest) return {};
   attempt.update = estimate(predicted, attempt.found, true);
+  if (attempt.update && attempt.update->inlier_count < fewest) return {};
   return attempt;
 }
 
@@ -265,6 +267,14 @@ std::optional<PoseUpdate> CameraTracker::estimate(const CameraState& predicted, 
   return estimate_pose(options_.pose, camera_, predicted, observations, update, use_prior);
 }
 
+double CameraTracker::median_range(const Eigen::Isometry3d& T_world_camera, const std::vector<FoundPoint>& found) const {
+  std::vector<double> ranges;
+  for (const FoundPoint& f : found) {
+    ranges.push_back((live_.map.points[static_cast<std::size_t>(f.point)].p_world - T_world_camera.translation()).norm());
+  }
+  return median(std::move(ranges));
+}
+
 bool CameraTracker::is_believable(const Attempt& attempt) const {
   if (!attempt.update || attempt.update->inlier_count < options_.least_inliers) return false;
   return attempt.update->inlier_count >= options_.least_inlier_share * static_cast<double>(attempt.found.size());
@@ -272,10 +282,11 @@ bool CameraTracker::is_believable(const Attempt& attempt) const {
 
 FrameReport CameraTracker::accept(const ImageFrame& frame, const CameraState& predicted, Attempt attempt) {
   const bool continues = has_pose_ && attempt.used_prior;
-  const bool was_flow = !attempt.features.has_value();
   FrameReport report;
-  if (!localises_only_ && keyframe_is_due(attempt)) {
-    add_keyframe(frame, predicted, attempt);
+  const bool anchor = keyframe_is_due(attempt);
+  if (anchor) anchor_in_features(frame, predicted, attempt);
+  if (anchor && !localises_only_) {
+    add_keyframe(frame, attempt);
     report.is_keyframe = true;
   }
   const PoseUpdate& update = *attempt.update;
@@ -286,17 +297,20 @@ FrameReport CameraTracker::accept(const ImageFrame& frame, const CameraState& pr
   } else if (has_pose_ && missed_ == 0) {  // a jump that the motion model did not foresee: open the gate at once
     noise_ = adapt(noise_, state_, next, 0.5);
   } else {
-    next = resting_state(frame.time, update.T_world_camera, update.covariance,
-                         std::max(state_.v_world.norm(), std::sqrt(update.covariance.topLeftCorner<3, 3>().trace())),
-                         std::max(state_.omega_camera.norm(), 0.1));
+    // Found anew, its motion is unknown: a hand turns by a radian per second and crosses half the depth in one.
+    const double depth = median_range(update.T_world_camera, attempt.found);
+    next = resting_state(frame.time, update.T_world_camera, update.covariance, 0.5 * depth, 1.0);
+    noise_ = {2.0 * depth, 10.0};
   }
   if (report.is_keyframe) {
     next.T_world_camera = live_.map.keyframes.back().T_world_camera;
     retrack_from_last_keyframe();
   } else {
     tracks_ = inliers_of(attempt.found, update);
-    if (!was_flow) keyframe_tracks_ = std::max(keyframe_tracks_, tracks_.size());
-    if (localises_only_ && !was_flow) keyframe_tracks_ = tracks_.size();
+    if (anchor) {
+      keyframe_tracks_ = tracks_.size();
+      T_world_keyframe_ = update.T_world_camera;
+    }
   }
 
   report.index = frame.index;
@@ -311,6 +325,7 @@ FrameReport CameraTracker::accept(const ImageFrame& frame, const CameraState& pr
     report.sightings.push_back({attempt.found[i].point, attempt.found[i].pixel, update.is_inlier[i]});
   }
   if (continues) report.expectations = expectations(predicted, attempt.found);
+  frames_since_anchor_ = anchor ? 0 : frames_since_anchor_ + 1;
   state_ = next;
   has_pose_ = true;
   missed_ = 0;
@@ -348,6 +363,7 @@ FrameReport CameraTracker::lose(const ImageFrame& frame, const CameraState& pred
 
 bool CameraTracker::keyframe_is_due(const Attempt& attempt) const {
   if (attempt.features && options_.features == FeatureMode::Auto) return true;  // flow has failed: stills, or a jump
+  if (localises_only_ && frames_since_anchor_ >= options_.anchor_every) return true;
   const PoseUpdate& update = *attempt.update;
   if (update.inlier_count < options_.keyframe_share * static_cast<double>(keyframe_tracks_)) return true;
   std::vector<double> angles;
@@ -360,11 +376,12 @@ bool CameraTracker::keyframe_is_due(const Attempt& attempt) const {
   return median(std::move(angles)) > options_.keyframe_parallax_deg * std::numbers::pi / 180.0;
 }
 
-void CameraTracker::add_keyframe(const ImageFrame& frame, const CameraState& predicted, Attempt& attempt) {
+// Followed points take the place of the feature near by, and the rest of the map is looked for close to where it must
+// be: what flow has drifted is taken back, what it has lost returns.
+void CameraTracker::anchor_in_features(const ImageFrame& frame, const CameraState& predicted, Attempt& attempt) const {
   if (!attempt.features) attempt.features = detect_sift(frame.grey, options_.sift);
-  // The followed points take the place of a feature near by, then the rest of the map is looked for.
-  std::vector<FoundPoint> found = inliers_of(attempt.found, *attempt.update);
-  found = snapped_to_features(found, *attempt.features);
+  std::vector<FoundPoint> found =
+      snapped_to_features(inliers_of(attempt.found, *attempt.update), *attempt.features, localises_only_);
   std::vector<bool> taken(static_cast<std::size_t>(attempt.features->size()), false);
   for (const FoundPoint& f : found) {
     if (f.feature >= 0) taken[static_cast<std::size_t>(f.feature)] = true;
@@ -383,11 +400,14 @@ void CameraTracker::add_keyframe(const ImageFrame& frame, const CameraState& pre
 
   CameraState start = predicted;
   if (!attempt.used_prior) start.T_world_camera = attempt.update->T_world_camera;
-  if (const auto update = estimate(start, found, attempt.used_prior);
-      update && update->inlier_count >= options_.least_inliers) {
-    attempt.found = found;
-    attempt.update = update;
-  }
+  const auto update = estimate(start, found, attempt.used_prior);
+  if (!update || update->inlier_count < options_.least_inliers) return;
+  if (localises_only_ && update->inlier_count < attempt.update->inlier_count / 3) return;  // a blurred image
+  attempt.found = std::move(found);
+  attempt.update = update;
+}
+
+void CameraTracker::add_keyframe(const ImageFrame& frame, Attempt& attempt) {
   NewKeyframe added;
   added.keyframe = {frame.index, frame.time, frame.name, attempt.update->T_world_camera, attempt.update->covariance, {}};
   added.features = *attempt.features;
@@ -400,7 +420,7 @@ void CameraTracker::add_keyframe(const ImageFrame& frame, const CameraState& pre
 }
 
 std::vector<FoundPoint> CameraTracker::snapped_to_features(const std::vector<FoundPoint>& found,
-                                                           const Features& features) const {
+                                                           const Features& features, bool drop_others) const {
   const FeatureGrid grid(features, 16.0);
   std::vector<bool> taken(static_cast<std::size_t>(features.size()), false);
   std::vector<FoundPoint> snapped;
@@ -418,7 +438,7 @@ std::vector<FoundPoint> CameraTracker::snapped_to_features(const std::vector<Fou
     if (feature && !taken[static_cast<std::size_t>(*feature)]) {
       taken[static_cast<std::size_t>(*feature)] = true;
       snapped.push_back({f.point, *feature, features.pixels[static_cast<std::size_t>(*feature)]});
-    } else {
+    } else if (!drop_others) {
       snapped.push_back(f);
     }
   }

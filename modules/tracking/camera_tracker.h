@@ -34,17 +34,19 @@ struct CameraTrackerOptions {
   GrowthOptions growth;
   double sigma_px = 1.0;              ///< of a feature, until the residuals have told better
   int most_tracks = 600;              ///< points followed by flow; more add time, hardly accuracy
+  double least_flow_share = 0.3;      ///< of the points followed; below it flow has lost its hold and SIFT is asked
   int least_inliers = 20;             ///< a pose from fewer points is not believed
   double least_inlier_share = 0.35;   ///< of the points found; a pose that most of them contradict is not believed
   double keyframe_share = 0.6;        ///< a keyframe is due when fewer of the last one's points are still followed
   double keyframe_parallax_deg = 3.0; ///< or when the median ray to them has turned by more
+  int anchor_every = 1;               ///< in a known map: frames after which flow is corrected by features
   int most_predicted = 5;             ///< frames without measurement after which the camera counts as lost
   int window = 8;                     ///< keyframes that local refinement moves
   int most_fixed = 12;                ///< and those that hold them
   double relocalisation_ratio = 0.8;  ///< of descriptor distances
 };
 
-/// Features per keyframe for images of this size: one per 150 px², 1000 to 6000.
+/// Features per keyframe for images of this size: one per 100 px², 1000 to 6000.
 int suggested_feature_count(const Camera& camera);
 
 /// Throws std::invalid_argument naming the field, its value and the bound.
@@ -93,14 +95,17 @@ class CameraTracker {
   Attempt match_every_descriptor(const CameraState& predicted, const ImageFrame& frame) const;
   std::optional<PoseUpdate> estimate(const CameraState& predicted, const std::vector<FoundPoint>& found,
                                      bool use_prior) const;
+  double median_range(const Eigen::Isometry3d& T_world_camera, const std::vector<FoundPoint>& found) const;
   bool is_believable(const Attempt& attempt) const;
 
   FrameReport accept(const ImageFrame& frame, const CameraState& predicted, Attempt attempt);
   std::vector<FrameExpectation> expectations(const CameraState& predicted, const std::vector<FoundPoint>& found) const;
   FrameReport lose(const ImageFrame& frame, const CameraState& predicted);
   bool keyframe_is_due(const Attempt& attempt) const;
-  void add_keyframe(const ImageFrame& frame, const CameraState& predicted, Attempt& attempt);
-  std::vector<FoundPoint> snapped_to_features(const std::vector<FoundPoint>& found, const Features& features) const;
+  void anchor_in_features(const ImageFrame& frame, const CameraState& predicted, Attempt& attempt) const;
+  void add_keyframe(const ImageFrame& frame, Attempt& attempt);
+  std::vector<FoundPoint> snapped_to_features(const std::vector<FoundPoint>& found, const Features& features,
+                                              bool drop_others) const;
   void refine_locally();
   void retrack_from_last_keyframe();
   void learn_noise(const PoseUpdate& update);
@@ -119,6 +124,7 @@ class CameraTracker {
   std::size_t keyframe_tracks_ = 0;  // how many there were at the last keyframe
   Eigen::Isometry3d T_world_keyframe_ = Eigen::Isometry3d::Identity();
   FlowImage previous_;
+  int frames_since_anchor_ = 0;      // since flow was last corrected by features
   int missed_ = 0;                   // frames since the last measured one
   bool has_pose_ = false;            // false: lost, or not yet located in a known map
   std::vector<FrameReport> reports_;

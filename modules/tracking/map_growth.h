@@ -10,7 +10,7 @@
 namespace alidade {
 
 struct GrowthOptions {
-  int neighbours = 3;                ///< keyframes that a new one is matched with
+  int neighbours = 5;                ///< keyframes that a new one is matched with
   double ratio = 0.8;                ///< of the descriptor distances, nearest to second nearest
   double least_angle_deg = 1.0;      ///< between the two rays of a new point
   double most_depth_sigma = 0.2;     ///< of a new point, as a share of its distance
