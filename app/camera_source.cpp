@@ -2,7 +2,6 @@
 #include "app/camera_source.h"
 
 #include <fmt/format.h>
-
 #include <opencv2/imgproc.hpp>
 
 #include "capture/file_sources.h"

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/frame_overlay.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+
+#include <fmt/format.h>
 
 #include "view/overlay.h"
 
 namespace alidade {
 namespace {
 
-constexpr std::size_t kTail = 8;      // frames of a track that its tail shows
-constexpr int kSamples = 6;           // pictures in the report
+constexpr std::size_t kTail = 8;  // frames of a track that its tail shows
+constexpr int kSamples = 6;       // pictures in the report
 
 std::string status_line(const FrameReport& report) {
   const auto inliers =

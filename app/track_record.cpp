@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/track_record.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "core/errors.h"
@@ -30,10 +30,11 @@ std::string csv_text(std::string text) {
 std::string frames_csv(const std::vector<FrameReport>& reports) {
   std::string csv = "index,t_ns,image,state,keyframe,inliers,chi2_per_dof,sigma_px,reason\n";
   for (const FrameReport& r : reports) {
-    const auto inliers = std::count_if(r.sightings.begin(), r.sightings.end(), [](const auto& s) { return s.is_inlier; });
+    const auto inliers =
+        std::count_if(r.sightings.begin(), r.sightings.end(), [](const auto& s) { return s.is_inlier; });
     csv += fmt::format("{},{},{},{},{},{},{:.4f},{:.4f},{}\n", r.index, r.time.time_since_epoch().count(),
-                       csv_text(r.name), to_string(r.state), r.is_keyframe ? 1 : 0, inliers, r.chi2_per_dof,
-                       r.sigma_px, csv_text(r.reason));
+                       csv_text(r.name), to_string(r.state), r.is_keyframe ? 1 : 0, inliers, r.chi2_per_dof, r.sigma_px,
+                       csv_text(r.reason));
   }
   return csv;
 }
@@ -82,7 +83,8 @@ Report report_of(const TrackRecord& record, const std::optional<cv::Mat>& scene,
   report.title = "Camera track of " + record.source;
   for (const std::string& line : table_lines(record)) {
     const auto colon = line.find(':');
-    report.summary.push_back({line.substr(0, colon), line.substr(std::min(line.size(), colon + 2)), "", Verdict::None, ""});
+    report.summary.push_back(
+        {line.substr(0, colon), line.substr(std::min(line.size(), colon + 2)), "", Verdict::None, ""});
   }
   report.warnings = record.warnings;
   if (scene) report.sections.push_back({"Map, path and cameras", {}, {}, {{*scene, "", FigureFormat::Png}}});
@@ -92,8 +94,10 @@ Report report_of(const TrackRecord& record, const std::optional<cv::Mat>& scene,
     overlays.figures.push_back({sample.picture, fmt::format("frame {}", sample.frame), FigureFormat::Jpeg});
   }
   if (!overlays.figures.empty()) report.sections.push_back(overlays);
-  report.links = {{"trajectory.tum", "poses of all frames (TUM)"}, {"covariance.csv", "their covariances"},
-                  {"frames.csv", "what happened at each frame"},   {"map.ply", "points with covariances and descriptors"},
+  report.links = {{"trajectory.tum", "poses of all frames (TUM)"},
+                  {"covariance.csv", "their covariances"},
+                  {"frames.csv", "what happened at each frame"},
+                  {"map.ply", "points with covariances and descriptors"},
                   {"colmap/images.txt", "the COLMAP text model"}};
   return report;
 }
@@ -116,11 +120,11 @@ int count(const std::vector<FrameReport>& reports, FrameState state) {
 nlohmann::json summary_of(const TrackRecord& record) {
   nlohmann::json summary;
   summary["source"] = record.source;
-  summary["times"] = record.has_times ? "of the data" : "one second per frame: the data has none, and no --fps was given";
+  summary["times"] =
+      record.has_times ? "of the data" : "one second per frame: the data has none, and no --fps was given";
   summary["unit_of_length"] = record.scale.empty() ? "free: one camera alone does not know it" : "m, " + record.scale;
   summary["frames"] = record.reports.size();
-  for (const FrameState state :
-       {FrameState::Tracked, FrameState::Predicted, FrameState::Waiting, FrameState::Lost}) {
+  for (const FrameState state : {FrameState::Tracked, FrameState::Predicted, FrameState::Waiting, FrameState::Lost}) {
     summary[std::string("frames_") + to_string(state)] = count(record.reports, state);
   }
   summary["keyframes"] = record.map.keyframes.size();
@@ -151,7 +155,8 @@ std::vector<std::string> table_lines(const TrackRecord& record) {
   lines.push_back(fmt::format("frames: {} tracked, {} predicted, {} waiting, {} lost, of {}",
                               count(reports, FrameState::Tracked), count(reports, FrameState::Predicted),
                               count(reports, FrameState::Waiting), count(reports, FrameState::Lost), reports.size()));
-  lines.push_back(fmt::format("map: {} points from {} keyframes", record.map.points.size(), record.map.keyframes.size()));
+  lines.push_back(
+      fmt::format("map: {} points from {} keyframes", record.map.points.size(), record.map.keyframes.size()));
   lines.push_back(fmt::format("path length: {:.4g} {}", path_length(trajectory_of(reports)),
                               record.scale.empty() ? "(unit free: see --scale)" : "m (" + record.scale + ")"));
   if (const auto& refinement = record.refinement) {
@@ -159,7 +164,8 @@ std::vector<std::string> table_lines(const TrackRecord& record) {
                                 refinement->rms_px_before, refinement->rms_px_after, refinement->sightings,
                                 refinement->seconds));
   }
-  lines.push_back(fmt::format("speed: {:.1f} frames/s", record.tracking_s > 0 ? static_cast<double>(reports.size()) / record.tracking_s : 0.0));
+  lines.push_back(fmt::format("speed: {:.1f} frames/s",
+                              record.tracking_s > 0 ? static_cast<double>(reports.size()) / record.tracking_s : 0.0));
   return lines;
 }
 

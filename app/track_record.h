@@ -23,15 +23,15 @@ struct OverlaySample {
 /// All that a camera track leaves, before it is written.
 struct TrackRecord {
   Camera camera;
-  std::string source;                  ///< FrameSource::describe()
+  std::string source;  ///< FrameSource::describe()
   bool has_times = false;
-  std::string scale;                   ///< where the unit of length comes from, in words
-  std::vector<FrameReport> reports;    ///< one per image
+  std::string scale;                 ///< where the unit of length comes from, in words
+  std::vector<FrameReport> reports;  ///< one per image
   PointMap map;
   std::optional<RefinementSummary> refinement;
   std::vector<std::string> warnings;
   std::vector<OverlaySample> overlays;
-  double tracking_s = 0;               ///< reading and tracking, without overlays and refinement
+  double tracking_s = 0;  ///< reading and tracking, without overlays and refinement
   bool interrupted = false;
 };
 

@@ -20,14 +20,16 @@ void bind(OptionFields& fields, CameraTrackerOptions& o) {
   fields.add("start.least_parallax_deg", o.start.two_view.least_parallax_deg, "deg",
              "median angle between the rays of the first two keyframes");
   fields.add("start.least_inliers", o.start.two_view.least_inliers, "", "matches that the first two keyframes need");
-  fields.add("update.gate_chi2", o.update.gate_chi2, "", "squared whitened residual beyond which a match is an outlier");
+  fields.add("update.gate_chi2", o.update.gate_chi2, "",
+             "squared whitened residual beyond which a match is an outlier");
   fields.add("update.map_covariance", o.update.map_covariance, "", "add the map's covariance to the measurement noise");
   fields.add("growth.neighbours", o.growth.neighbours, "", "keyframes that a new one is matched with");
   fields.add("growth.ratio", o.growth.ratio, "", "descriptor distance, nearest to second nearest");
   fields.add("growth.least_angle_deg", o.growth.least_angle_deg, "deg", "between the rays of a new point");
   fields.add("most_tracks", o.most_tracks, "", "points followed by optical flow");
   fields.add("least_inliers", o.least_inliers, "", "points without which no pose is believed");
-  fields.add("keyframe_share", o.keyframe_share, "", "of the last keyframe's points still followed: below it a new one");
+  fields.add("keyframe_share", o.keyframe_share, "",
+             "of the last keyframe's points still followed: below it a new one");
   fields.add("keyframe_parallax_deg", o.keyframe_parallax_deg, "deg", "turn of the median ray: beyond it a new one");
   fields.add("anchor_every", o.anchor_every, "", "in a known map: frames after which flow is corrected by features");
   fields.add("most_predicted", o.most_predicted, "", "frames without measurement before the camera counts as lost");

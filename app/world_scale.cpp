@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/world_scale.h"
 
-#include <fmt/format.h>
-
 #include <charconv>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "core/errors.h"
 
@@ -32,7 +32,8 @@ std::optional<Number> parse(const std::string& word) {
 }
 
 [[noreturn]] void refuse(const std::string& text) {
-  throw InputError("--scale", 0, fmt::format("'{}' is neither marker:SIDE_M[:ID] nor distance:FRAME_A:FRAME_B:METRES", text),
+  throw InputError("--scale", 0,
+                   fmt::format("'{}' is neither marker:SIDE_M[:ID] nor distance:FRAME_A:FRAME_B:METRES", text),
                    "lengths are in metres and greater than 0, frames count from 0");
 }
 
@@ -56,11 +57,13 @@ ScaleWish parse_scale(const std::string& text) {
 }
 
 std::optional<FoundScale> find_scale(const ScaleWish& wish, const Camera& camera,
-                                     const std::vector<FrameReport>& reports, const std::vector<FrameMarkers>& markers) {
+                                     const std::vector<FrameReport>& reports,
+                                     const std::vector<FrameMarkers>& markers) {
   if (const auto* known = std::get_if<KnownDistance>(&wish)) {
     const auto similarity = similarity_from_distance(reports, *known);
     if (!similarity) return std::nullopt;
-    return FoundScale{*similarity, fmt::format("from the distance between frames {} and {}", known->frame_a, known->frame_b)};
+    return FoundScale{*similarity,
+                      fmt::format("from the distance between frames {} and {}", known->frame_a, known->frame_b)};
   }
   if (const auto* marker = std::get_if<MarkerScale>(&wish)) {
     const auto similarity = similarity_from_marker(camera, reports, markers, marker->side_m, marker->id);

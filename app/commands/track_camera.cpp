@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <chrono>
+
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "app/camera_source.h"
@@ -27,7 +27,8 @@ class TrackCameraCommand : public Command {
     flags.add_option("--init-poses", init_poses_, "trajectory with the poses of the first two frames");
     flags.add_option("--scale", scale_, "marker:SIDE_M[:ID] or distance:FRAME_A:FRAME_B:METRES");
     flags.add_option("--fps", fps_hz_, "frames per second of images that have no times")->check(CLI::PositiveNumber);
-    options_.add_choice("refine", refine_, {{"none", Refine::None}, {"local", Refine::Local}, {"global", Refine::Global}},
+    options_.add_choice("refine", refine_,
+                        {{"none", Refine::None}, {"local", Refine::Local}, {"global", Refine::Global}},
                         "bundle adjustment: none, of the last keyframes, or also of all in the end");
     options_.add("overlay", overlay_, "", "write overlay.mp4: the frames with what was found in them");
     tracker_.sift.most = 0;
@@ -75,8 +76,8 @@ class TrackCameraCommand : public Command {
     return read_map_ply(std::filesystem::is_directory(path) ? path / "map.ply" : path);
   }
 
-  void follow(const RunContext& context, CameraSource& source, CameraTracker& tracker,
-              const ResultDirectory& directory, TrackRecord& record) {
+  void follow(const RunContext& context, CameraSource& source, CameraTracker& tracker, const ResultDirectory& directory,
+              TrackRecord& record) {
     using Clock = std::chrono::steady_clock;
     const auto total = source.frames->frame_count();
     OverlayMovie movie(directory.path("overlay.mp4"), record.has_times ? fps_hz_.value_or(30.0) : 5.0, total);
@@ -95,7 +96,8 @@ class TrackCameraCommand : public Command {
       if (look_for_markers && report.is_keyframe) markers_.push_back({report.index, detect_markers(frame->grey)});
       if (overlay_) movie.add(*frame, report);
       Progress progress{"tracking", frame->index + 1, total.value_or(0), ""};
-      const std::string news = report.reason.empty() ? "" : fmt::format("{}: {}", to_string(report.state), report.reason);
+      const std::string news =
+          report.reason.empty() ? "" : fmt::format("{}: {}", to_string(report.state), report.reason);
       if (news != told) progress.message = told = news;
       context.progress(progress);
     }
@@ -108,9 +110,8 @@ class TrackCameraCommand : public Command {
     LiveMap live = tracker.live_map();
     if (refine_ == Refine::Global && !record.interrupted && live.map.keyframes.size() >= 2) {
       context.progress({"refining", 0, 1, ""});
-      RefinedTrack refined =
-          refine_globally(record.camera, std::move(live), std::move(record.reports), tracker.options(),
-                          tracker.anchored_keyframes());
+      RefinedTrack refined = refine_globally(record.camera, std::move(live), std::move(record.reports),
+                                             tracker.options(), tracker.anchored_keyframes());
       context.progress({"refining", 1, 1, ""});
       live = std::move(refined.live);
       record.reports = std::move(refined.reports);

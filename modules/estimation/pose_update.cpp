@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "estimation/pose_update.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 #include "geometry/rotation.h"
 

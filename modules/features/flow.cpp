@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "features/flow.h"
 
-#include <opencv2/video/tracking.hpp>
 #include <stdexcept>
+
+#include <opencv2/video/tracking.hpp>
 
 namespace alidade {
 namespace {

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
-#include <opencv2/core.hpp>
 #include <optional>
 #include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
 
 namespace alidade {
 
 struct FlowOptions {
-  int window_px = 21;            ///< side of the patch that is followed; OpenCV's default
-  int levels = 3;                ///< pyramid levels above the image: reach about 80 px
-  double most_return_px = 0.7;   ///< forward and back again must end this near to the start
-  double least_eigenvalue = 1e-3; ///< of the patch's gradient matrix, grey levels of 0–1: flatter patches slide
+  int window_px = 21;              ///< side of the patch that is followed; OpenCV's default
+  int levels = 3;                  ///< pyramid levels above the image: reach about 80 px
+  double most_return_px = 0.7;     ///< forward and back again must end this near to the start
+  double least_eigenvalue = 1e-3;  ///< of the patch's gradient matrix, grey levels of 0–1: flatter patches slide
 };
 
 /// An image with its pyramid, built once and used against both neighbours.

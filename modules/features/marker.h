@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
-#include <opencv2/core.hpp>
 #include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
 
 namespace alidade {
 

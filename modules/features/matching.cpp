@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
 #include <opencv2/core/hal/hal.hpp>
 #include <opencv2/features2d.hpp>
 

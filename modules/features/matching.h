@@ -35,8 +35,8 @@ class FeatureGrid {
 };
 
 struct GuidedOptions {
-  double ratio = 0.85;          ///< of best to second best distance among the candidates in the window
-  double most_distance = 210;   ///< RootSIFT bytes, L2; unrelated descriptors lie about 500 apart
+  double ratio = 0.85;         ///< of best to second best distance among the candidates in the window
+  double most_distance = 210;  ///< RootSIFT bytes, L2; unrelated descriptors lie about 500 apart
 };
 
 /// The feature that a descriptor (128 float32) fits best among `candidates`; empty where none is near enough or the

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/features2d.hpp>
 #include <stdexcept>
+
+#include <opencv2/features2d.hpp>
 
 namespace alidade {
 namespace {

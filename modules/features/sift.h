@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
-#include <vector>
 
 #include "geometry/point_map.h"
 
@@ -19,9 +20,10 @@ struct Features {
 };
 
 struct SiftOptions {
-  int most = 2000;           ///< the strongest ones are kept; about one per 150 px² of a 640×480 image
-  int fewest = 400;          ///< below it the contrast threshold is lowered, down to lowest_contrast
-  double contrast = 0.01;    ///< of the difference of Gaussians, grey levels of 0–1 (OpenCV's default 0.04 starves dark images)
+  int most = 2000;   ///< the strongest ones are kept; about one per 150 px² of a 640×480 image
+  int fewest = 400;  ///< below it the contrast threshold is lowered, down to lowest_contrast
+  double contrast =
+      0.01;  ///< of the difference of Gaussians, grey levels of 0–1 (OpenCV's default 0.04 starves dark images)
   double lowest_contrast = 0.002;
 };
 

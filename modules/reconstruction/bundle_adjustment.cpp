@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reconstruction/bundle_adjustment.h"
 
-#include <ceres/ceres.h>
-#include <fmt/format.h>
-
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <stdexcept>
+
+#include <Eigen/Geometry>
+#include <ceres/ceres.h>
+#include <fmt/format.h>
 
 #include "geometry/rotation.h"
 

@@ -13,7 +13,7 @@ struct BundleOptions {
   std::vector<int> fixed_keyframes;  ///< which hold the points as they stand; none: the scale is free, kept by damping
   double loss_sigmas = 2.0;          ///< Cauchy scale: a residual beyond it pulls ever less
   int max_iterations = 20;
-  bool refine_focal = false;         ///< one factor on fx and fy, to see which focal length fits
+  bool refine_focal = false;  ///< one factor on fx and fy, to see which focal length fits
 };
 
 struct BundleResult {
@@ -24,8 +24,9 @@ struct BundleResult {
   int iterations = 0;
   double seconds = 0;
   bool converged = false;
-  double focal_factor = 1.0;        ///< with refine_focal: what fx and fy have to be multiplied with
-  double focal_factor_sigma = 0.0;  ///< its standard deviation, from the gain in cost (the map must have converged before)
+  double focal_factor = 1.0;  ///< with refine_focal: what fx and fy have to be multiplied with
+  double focal_factor_sigma =
+      0.0;  ///< its standard deviation, from the gain in cost (the map must have converged before)
 };
 
 /// Moves the free keyframes and every point that they see to the least robust reprojection error over the sightings of

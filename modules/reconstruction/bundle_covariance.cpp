@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reconstruction/bundle_covariance.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 #include "geometry/rotation.h"
 

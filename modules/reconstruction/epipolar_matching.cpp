@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+
 #include <opencv2/core/hal/hal.hpp>
 #include <opencv2/core/utility.hpp>
 
@@ -50,7 +51,8 @@ std::vector<int> nearest_in_band(const PosedFeatures& a, const NormalisedPixels&
           second = d;
         }
       }
-      const bool distinct = std::sqrt(best) < options.ratio * std::sqrt(second) && std::sqrt(best) < options.most_distance;
+      const bool distinct =
+          std::sqrt(best) < options.ratio * std::sqrt(second) && std::sqrt(best) < options.most_distance;
       if (!distinct) nearest[static_cast<std::size_t>(i)] = -1;
     }
   };

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reconstruction/map_point.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <numbers>
 #include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 #include "geometry/rotation.h"
 
@@ -36,8 +37,8 @@ std::optional<Intersection> start(const Camera& camera, std::span<const PosedSig
   for (const PosedSighting& s : sightings) {
     const auto d_camera = unproject(camera, s.pixel);
     if (!d_camera) return std::nullopt;
-    rays.push_back({s.T_world_camera.translation(), (s.T_world_camera.linear() * *d_camera).normalized(),
-                    s.sigma_px / camera.fx});
+    rays.push_back(
+        {s.T_world_camera.translation(), (s.T_world_camera.linear() * *d_camera).normalized(), s.sigma_px / camera.fx});
   }
   return intersect_rays(rays, least_angle_deg * std::numbers::pi / 180.0);
 }

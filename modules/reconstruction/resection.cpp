@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reconstruction/resection.h"
 
+#include <algorithm>
+
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <algorithm>
 #include <opencv2/calib3d.hpp>
 
 #include "geometry/rotation.h"
@@ -31,7 +32,9 @@ Correspondences gather(const Camera& camera, std::span<const PointObservation> o
   return c;
 }
 
-cv::Matx33d pinhole(const Camera& c) { return {c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1}; }
+cv::Matx33d pinhole(const Camera& c) {
+  return {c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1};
+}
 
 // Points on one line, or in one place, leave a turn open; OpenCV answers nevertheless.
 bool lie_on_one_line(const std::vector<cv::Point3d>& points) {

@@ -27,7 +27,7 @@ struct RansacPose {
 
 struct RansacPnpOptions {
   double threshold_px = 4.0;
-  int iterations = 1000;      ///< finds four inliers of 30 % with 99.97 %
+  int iterations = 1000;  ///< finds four inliers of 30 % with 99.97 %
   int least_inliers = 15;
 };
 

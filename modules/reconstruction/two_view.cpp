@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reconstruction/two_view.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include <fmt/format.h>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/eigen.hpp>
 
@@ -37,7 +37,9 @@ NormalisedPairs normalise(const Camera& camera, const std::vector<PixelPair>& pa
   return result;
 }
 
-Eigen::Vector3d direction(const cv::Point2d& p) { return Eigen::Vector3d(p.x, p.y, 1.0).normalized(); }
+Eigen::Vector3d direction(const cv::Point2d& p) {
+  return Eigen::Vector3d(p.x, p.y, 1.0).normalized();
+}
 
 // The pairs among `candidates` whose rays meet in front of both cameras, and the median angle at which they meet.
 struct Frontal {
@@ -116,8 +118,8 @@ Candidate from_essential(const NormalisedPairs& pairs, const cv::Mat& E, const s
                          double threshold) {
   cv::Mat R1, R2, t;
   cv::decomposeEssentialMat(E.rowRange(0, 3), R1, R2, t);
-  return best_of(pairs, inliers,
-                 {from_opencv(R1, t), from_opencv(R1, -t), from_opencv(R2, t), from_opencv(R2, -t)}, threshold);
+  return best_of(pairs, inliers, {from_opencv(R1, t), from_opencv(R1, -t), from_opencv(R2, t), from_opencv(R2, -t)},
+                 threshold);
 }
 
 // A plane leaves up to two motions; fit only if one of them explains clearly more points.
@@ -158,7 +160,8 @@ TwoViewGeometry solve_two_views(const Camera& camera, const std::vector<PixelPai
   const double threshold = options.threshold_px / (0.5 * (camera.fx + camera.fy));
 
   cv::Mat mask;
-  const cv::Mat E = cv::findEssentialMat(pairs.a, pairs.b, 1.0, cv::Point2d(), cv::RANSAC, kConfidence, threshold, mask);
+  const cv::Mat E =
+      cv::findEssentialMat(pairs.a, pairs.b, 1.0, cv::Point2d(), cv::RANSAC, kConfidence, threshold, mask);
   if (E.empty()) {
     result.outcome = TwoViewOutcome::NoCommonMotion;
     return result;
@@ -194,8 +197,9 @@ std::string explain(const TwoViewGeometry& g, const TwoViewOptions& options) {
     case TwoViewOutcome::NoCommonMotion:
       return fmt::format("only {} matches agree on one motion: do the images overlap?", g.inliers.size());
     case TwoViewOutcome::TooLittleParallax:
-      return fmt::format("parallax {:.2f} of the {:.1f} deg needed: move the camera sideways, rotation alone gives no depth",
-                         g.median_parallax_deg, options.least_parallax_deg);
+      return fmt::format(
+          "parallax {:.2f} of the {:.1f} deg needed: move the camera sideways, rotation alone gives no depth",
+          g.median_parallax_deg, options.least_parallax_deg);
     case TwoViewOutcome::PlanarAmbiguity:
       return "the scene is one plane seen from too little apart: move on, or bring depth into view";
   }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "camera/camera.h"
 #include "geometry/pose.h"
@@ -22,7 +23,7 @@ struct TwoViewOptions {
   int least_inliers = 60;           ///< fewer do not carry a map
   double least_share = 0.4;         ///< of the pairs that must agree with one motion
   double least_parallax_deg = 1.5;  ///< median angle between the two rays of a point: below it, depth is guesswork
-  double planar_share = 0.9;        ///< homography inliers over essential inliers from which the scene counts as a plane
+  double planar_share = 0.9;  ///< homography inliers over essential inliers from which the scene counts as a plane
 };
 
 /// Whether two views fix a relative pose, or why they do not yet.

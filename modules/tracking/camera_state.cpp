@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/camera_state.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+
+#include <Eigen/Cholesky>
 
 #include "geometry/rotation.h"
 
@@ -44,8 +45,7 @@ CameraState absorb(const CameraState& predicted, const Eigen::Isometry3d& T_worl
   const Vector6d xi = difference(predicted.T_world_camera, T_world_camera);
   const Matrix6d P = predicted.covariance.topLeftCorner<6, 6>();
   // How all of the state follows the pose: P_{:,pose} P_pose⁻¹.
-  const Eigen::Matrix<double, 12, 6> follow =
-      P.ldlt().solve(predicted.covariance.topRows<6>()).transpose();
+  const Eigen::Matrix<double, 12, 6> follow = P.ldlt().solve(predicted.covariance.topRows<6>()).transpose();
   const Eigen::Matrix<double, 6, 1> velocity = follow.bottomRows<6>() * xi;
   state.T_world_camera = T_world_camera;
   state.v_world += velocity.head<3>();

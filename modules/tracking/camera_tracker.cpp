@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/camera_tracker.h"
 
-#include <fmt/format.h>
-
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+
+#include <Eigen/LU>
+#include <fmt/format.h>
 
 #include "reconstruction/bundle_covariance.h"
 #include "reconstruction/resection.h"
@@ -55,7 +55,9 @@ void require(bool holds, const char* field, double value, const char* bound) {
 
 }  // namespace
 
-int suggested_feature_count(const Camera& camera) { return std::clamp(camera.width * camera.height / 100, 1000, 6000); }
+int suggested_feature_count(const Camera& camera) {
+  return std::clamp(camera.width * camera.height / 100, 1000, 6000);
+}
 
 void validate(const CameraTrackerOptions& o) {
   require(o.sigma_px > 0, "sigma_px", o.sigma_px, "> 0 px");
@@ -145,7 +147,8 @@ void CameraTracker::adopt(StartedMap started, const ImageFrame& frame) {
 FrameReport CameraTracker::track(const ImageFrame& frame, const FlowImage& flow) {
   // 1. Predict (eqs. 1-7).
   const CameraState predicted = has_pose_ ? predict(state_, frame.time, noise_) : state_;
-  // 2. Find the map's points: by flow from the previous frame, else by SIFT near where they are expected, else anywhere.
+  // 2. Find the map's points: by flow from the previous frame, else by SIFT near where they are expected, else
+  // anywhere.
   Attempt attempt;
   if (options_.features == FeatureMode::Sift) {
     attempt = match_every_descriptor(predicted, frame);
@@ -267,10 +270,12 @@ std::optional<PoseUpdate> CameraTracker::estimate(const CameraState& predicted, 
   return estimate_pose(options_.pose, camera_, predicted, observations, update, use_prior);
 }
 
-double CameraTracker::median_range(const Eigen::Isometry3d& T_world_camera, const std::vector<FoundPoint>& found) const {
+double CameraTracker::median_range(const Eigen::Isometry3d& T_world_camera,
+                                   const std::vector<FoundPoint>& found) const {
   std::vector<double> ranges;
   for (const FoundPoint& f : found) {
-    ranges.push_back((live_.map.points[static_cast<std::size_t>(f.point)].p_world - T_world_camera.translation()).norm());
+    ranges.push_back(
+        (live_.map.points[static_cast<std::size_t>(f.point)].p_world - T_world_camera.translation()).norm());
   }
   return median(std::move(ranges));
 }
@@ -409,7 +414,8 @@ void CameraTracker::anchor_in_features(const ImageFrame& frame, const CameraStat
 
 void CameraTracker::add_keyframe(const ImageFrame& frame, Attempt& attempt) {
   NewKeyframe added;
-  added.keyframe = {frame.index, frame.time, frame.name, attempt.update->T_world_camera, attempt.update->covariance, {}};
+  added.keyframe = {frame.index, frame.time, frame.name, attempt.update->T_world_camera, attempt.update->covariance,
+                    {}};
   added.features = *attempt.features;
   added.found = inliers_of(attempt.found, *attempt.update);
   live_ = with_keyframe(std::move(live_), std::move(added), options_.sigma_px);

@@ -26,24 +26,24 @@ enum class FeatureMode {
 struct CameraTrackerOptions {
   PoseMethod pose = PoseMethod::Ekf;
   FeatureMode features = FeatureMode::Auto;
-  bool local_refinement = true;       ///< bundle adjustment of the last keyframes at every new one
+  bool local_refinement = true;  ///< bundle adjustment of the last keyframes at every new one
   SiftOptions sift;
   FlowOptions flow;
   StarterOptions start;
   PoseUpdateOptions update;
   GrowthOptions growth;
-  double sigma_px = 1.0;              ///< of a feature, until the residuals have told better
-  int most_tracks = 600;              ///< points followed by flow; more add time, hardly accuracy
-  double least_flow_share = 0.3;      ///< of the points followed; below it flow has lost its hold and SIFT is asked
-  int least_inliers = 20;             ///< a pose from fewer points is not believed
-  double least_inlier_share = 0.35;   ///< of the points found; a pose that most of them contradict is not believed
-  double keyframe_share = 0.6;        ///< a keyframe is due when fewer of the last one's points are still followed
-  double keyframe_parallax_deg = 3.0; ///< or when the median ray to them has turned by more
-  int anchor_every = 1;               ///< in a known map: frames after which flow is corrected by features
-  int most_predicted = 5;             ///< frames without measurement after which the camera counts as lost
-  int window = 8;                     ///< keyframes that local refinement moves
-  int most_fixed = 12;                ///< and those that hold them
-  double relocalisation_ratio = 0.8;  ///< of descriptor distances
+  double sigma_px = 1.0;               ///< of a feature, until the residuals have told better
+  int most_tracks = 600;               ///< points followed by flow; more add time, hardly accuracy
+  double least_flow_share = 0.3;       ///< of the points followed; below it flow has lost its hold and SIFT is asked
+  int least_inliers = 20;              ///< a pose from fewer points is not believed
+  double least_inlier_share = 0.35;    ///< of the points found; a pose that most of them contradict is not believed
+  double keyframe_share = 0.6;         ///< a keyframe is due when fewer of the last one's points are still followed
+  double keyframe_parallax_deg = 3.0;  ///< or when the median ray to them has turned by more
+  int anchor_every = 1;                ///< in a known map: frames after which flow is corrected by features
+  int most_predicted = 5;              ///< frames without measurement after which the camera counts as lost
+  int window = 8;                      ///< keyframes that local refinement moves
+  int most_fixed = 12;                 ///< and those that hold them
+  double relocalisation_ratio = 0.8;   ///< of descriptor distances
 };
 
 /// Features per keyframe for images of this size: one per 100 px², 1000 to 6000.
@@ -116,7 +116,7 @@ class CameraTracker {
   int anchored_keyframes_ = 1;
   MapStarter starter_;
   LiveMap live_;
-  std::vector<int> living_;          // indices of the points worth looking for
+  std::vector<int> living_;  // indices of the points worth looking for
   CameraState state_;
   MotionNoise noise_;
   double sigma_px_ = 1.0;
@@ -124,9 +124,9 @@ class CameraTracker {
   std::size_t keyframe_tracks_ = 0;  // how many there were at the last keyframe
   Eigen::Isometry3d T_world_keyframe_ = Eigen::Isometry3d::Identity();
   FlowImage previous_;
-  int frames_since_anchor_ = 0;      // since flow was last corrected by features
-  int missed_ = 0;                   // frames since the last measured one
-  bool has_pose_ = false;            // false: lost, or not yet located in a known map
+  int frames_since_anchor_ = 0;  // since flow was last corrected by features
+  int missed_ = 0;               // frames since the last measured one
+  bool has_pose_ = false;        // false: lost, or not yet located in a known map
   std::vector<FrameReport> reports_;
 };
 

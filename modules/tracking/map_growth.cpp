@@ -56,8 +56,8 @@ PosedSighting posed(const LiveMap& live, const FeatureView& view, double sigma_p
 }
 
 // A new point from one feature each of keyframes `last` and `other`; its index, or empty where the rays do not agree.
-std::optional<int> add_point(const Camera& camera, LiveMap& live, const FeatureView& in_other, const FeatureView& in_last,
-                             const cv::Mat& image, const GrowthOptions& options) {
+std::optional<int> add_point(const Camera& camera, LiveMap& live, const FeatureView& in_other,
+                             const FeatureView& in_last, const cv::Mat& image, const GrowthOptions& options) {
   const PosedSighting pair[] = {posed(live, in_other, options.sigma_px), posed(live, in_last, options.sigma_px)};
   const auto meeting = triangulate(camera, pair, {options.least_angle_deg, 9.2});
   if (!meeting) return std::nullopt;
@@ -82,8 +82,8 @@ std::vector<int> grow_between(const Camera& camera, LiveMap& live, int last, int
   const auto pose = [&](int k) { return live.map.keyframes[static_cast<std::size_t>(k)].T_world_camera; };
   EpipolarOptions epipolar;
   epipolar.ratio = options.ratio;
-  const auto matches = match_along_epipolar_lines(camera, {a.features, free_a, pose(last)},
-                                                  {b.features, free_b, pose(other)}, epipolar);
+  const auto matches =
+      match_along_epipolar_lines(camera, {a.features, free_a, pose(last)}, {b.features, free_b, pose(other)}, epipolar);
   std::vector<int> grown;
   for (const Match& m : matches) {
     const auto point = add_point(camera, live, {other, m.b}, {last, m.a}, image, options);
@@ -119,8 +119,8 @@ LiveMap with_keyframe(LiveMap live, NewKeyframe added, double sigma_px) {
   return live;
 }
 
-LiveMap with_points_of_pair(const Camera& camera, LiveMap live, const std::vector<Match>& matches,
-                            const cv::Mat& image, const GrowthOptions& options) {
+LiveMap with_points_of_pair(const Camera& camera, LiveMap live, const std::vector<Match>& matches, const cv::Mat& image,
+                            const GrowthOptions& options) {
   for (const Match& m : matches) add_point(camera, live, {0, m.a}, {1, m.b}, image, options);
   return live;
 }

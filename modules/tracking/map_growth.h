@@ -10,11 +10,11 @@
 namespace alidade {
 
 struct GrowthOptions {
-  int neighbours = 5;                ///< keyframes that a new one is matched with
-  double ratio = 0.8;                ///< of the descriptor distances, nearest to second nearest
-  double least_angle_deg = 1.0;      ///< between the two rays of a new point
-  double most_depth_sigma = 0.2;     ///< of a new point, as a share of its distance
-  double sigma_px = 1.0;             ///< of a SIFT feature
+  int neighbours = 5;             ///< keyframes that a new one is matched with
+  double ratio = 0.8;             ///< of the descriptor distances, nearest to second nearest
+  double least_angle_deg = 1.0;   ///< between the two rays of a new point
+  double most_depth_sigma = 0.2;  ///< of a new point, as a share of its distance
+  double sigma_px = 1.0;          ///< of a SIFT feature
 };
 
 /// The colour (RGB) of an 8-bit image, grey or BGR, at the pixel nearest to `pixel`; grey for an empty image.
@@ -28,9 +28,10 @@ struct NewKeyframe {
 };
 LiveMap with_keyframe(LiveMap live, NewKeyframe added, double sigma_px);
 
-/// Adds the points that a first pair of keyframes agrees on: `matches` between the features of keyframe 0 (a) and 1 (b).
-LiveMap with_points_of_pair(const Camera& camera, LiveMap live, const std::vector<Match>& matches,
-                            const cv::Mat& image, const GrowthOptions& options);
+/// Adds the points that a first pair of keyframes agrees on: `matches` between the features of keyframe 0 (a) and 1
+/// (b).
+LiveMap with_points_of_pair(const Camera& camera, LiveMap live, const std::vector<Match>& matches, const cv::Mat& image,
+                            const GrowthOptions& options);
 
 /// Matches the last keyframe's free features with those of its best neighbours and adds the points that they agree on,
 /// each with its covariance, coloured from `image` (of the last keyframe); looks for the new points in the other

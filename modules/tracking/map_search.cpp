@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/map_search.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <opencv2/core/hal/hal.hpp>
 
 #include "geometry/rotation.h"
@@ -22,8 +23,7 @@ std::vector<int> features_in_ellipse(const FeatureGrid& grid, const Features& fe
   std::erase_if(inside, [&](int i) {
     if (taken[static_cast<std::size_t>(i)]) return true;
     const Eigen::Vector2d off = features.pixels[static_cast<std::size_t>(i)] - expected.pixel;
-    return off.norm() > options.least_radius_px &&
-           off.dot(S_inverse * off) > options.gate_sigmas * options.gate_sigmas;
+    return off.norm() > options.least_radius_px && off.dot(S_inverse * off) > options.gate_sigmas * options.gate_sigmas;
   });
   return inside;
 }

@@ -30,8 +30,8 @@ struct ExpectedPixel {
 };
 
 struct SearchOptions {
-  double sigma_px = 1.0;        ///< measurement noise
-  double gate_sigmas = 3.5;     ///< half size of the innovation ellipse that is searched
+  double sigma_px = 1.0;     ///< measurement noise
+  double gate_sigmas = 3.5;  ///< half size of the innovation ellipse that is searched
   double least_radius_px = 3.0;
   double most_radius_px = 60.0;
   GuidedOptions descriptor;

@@ -27,15 +27,17 @@ Jacobian13x12 jacobian_of_paper_state(const CameraState& state) {
   return J;
 }
 
-Eigen::Quaterniond quaternion_of(const Vector13d& s) { return {s(3), s(4), s(5), s(6)}; }
+Eigen::Quaterniond quaternion_of(const Vector13d& s) {
+  return {s(3), s(4), s(5), s(6)};
+}
 
 // ∂(R(q) a)/∂q for R(q) a = (w² - |u|²) a + 2 (u·a) u + 2 w (u × a), columns w, x, y, z.
 Eigen::Matrix<double, 3, 4> jacobian_of_rotated(const Eigen::Quaterniond& q, const Eigen::Vector3d& a) {
   const Eigen::Vector3d u = q.vec();
   Eigen::Matrix<double, 3, 4> J;
   J.col(0) = 2.0 * (q.w() * a + u.cross(a));
-  J.rightCols<3>() = 2.0 * (u.dot(a) * Eigen::Matrix3d::Identity() + u * a.transpose() - a * u.transpose() -
-                            q.w() * skew(a));
+  J.rightCols<3>() =
+      2.0 * (u.dot(a) * Eigen::Matrix3d::Identity() + u * a.transpose() - a * u.transpose() - q.w() * skew(a));
   return J;
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/pose_method.h"
 
-#include <Eigen/LU>
 #include <vector>
+
+#include <Eigen/LU>
 
 #include "reconstruction/resection.h"
 #include "tracking/paper_filter.h"

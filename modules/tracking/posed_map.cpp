@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/posed_map.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include <Eigen/LU>
 
 namespace alidade {
 namespace {
@@ -53,8 +54,7 @@ std::optional<MapPoint> fuse(const MapPoint& known, const MapPoint& seen) {
   const Eigen::Vector3d off = seen.p_world - known.p_world;
   if (off.dot((known.covariance_world + seen.covariance_world).inverse() * off) > 11.3) return std::nullopt;
   MapPoint fused = known;
-  const Eigen::Matrix3d gain =
-      known.covariance_world * (known.covariance_world + seen.covariance_world).inverse();
+  const Eigen::Matrix3d gain = known.covariance_world * (known.covariance_world + seen.covariance_world).inverse();
   fused.p_world += gain * off;
   fused.covariance_world = (Eigen::Matrix3d::Identity() - gain) * known.covariance_world;
   return fused;

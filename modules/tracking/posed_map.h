@@ -21,11 +21,11 @@ struct PosedImage {
 struct PosedMapOptions {
   SiftOptions sift;
   GrowthOptions growth;
-  double pose_sigma_m = 0.005;           ///< of the given poses: how far around its projection a point is looked for
+  double pose_sigma_m = 0.005;  ///< of the given poses: how far around its projection a point is looked for
   double pose_sigma_rad = 0.003;
-  double depth_sigma_at_1m = 0.0028;     ///< m; grows with the square of the distance (structured light, Khoshelham 2012)
-  double most_depth_m = 6.0;             ///< beyond it such a sensor is not believed
-  double most_depth_step_share = 0.03;   ///< of the depth, within two pixels: beyond it the feature lies on an edge
+  double depth_sigma_at_1m = 0.0028;  ///< m; grows with the square of the distance (structured light, Khoshelham 2012)
+  double most_depth_m = 6.0;          ///< beyond it such a sensor is not believed
+  double most_depth_step_share = 0.03;  ///< of the depth, within two pixels: beyond it the feature lies on an edge
 };
 
 /// The map with one more image: known points found again in it, new ones lifted by its depth, or triangulated with

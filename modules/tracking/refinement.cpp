@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/refinement.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
+
+#include <fmt/format.h>
 
 #include "reconstruction/bundle_covariance.h"
 
@@ -27,8 +27,9 @@ std::vector<int> all_keyframes(const PointMap& map) {
 std::optional<std::string> doubt_focal_length(const Camera& camera, const RefinementSummary& summary) {
   const double off = std::abs(summary.focal_factor - 1.0);
   if (off < 0.04 || off < 5.0 * summary.focal_factor_sigma) return std::nullopt;
-  return fmt::format("the images do not fit the camera's focal length of {:.1f} px; {:.1f} px fits: calibrate the camera again",
-                     camera.fx, camera.fx * summary.focal_factor);
+  return fmt::format(
+      "the images do not fit the camera's focal length of {:.1f} px; {:.1f} px fits: calibrate the camera again",
+      camera.fx, camera.fx * summary.focal_factor);
 }
 
 RefinedTrack refine_globally(const Camera& camera, LiveMap live, std::vector<FrameReport> reports,
@@ -39,15 +40,16 @@ RefinedTrack refine_globally(const Camera& camera, LiveMap live, std::vector<Fra
   BundleOptions bundle = global_bundle_options(live.map, anchored);
   bundle.max_iterations = 25;
   for (double radius_px : {5.0, 3.0}) {
-    auto completion = complete_sightings(camera, std::move(live), living_points(live.map),
-                                         all_keyframes(live.map), radius_px);
+    auto completion =
+        complete_sightings(camera, std::move(live), living_points(live.map), all_keyframes(live.map), radius_px);
     live = std::move(completion.live);
     summary.sightings_added += completion.added;
     bundle.loss_sigmas = kLossSigmas * reprojection_sigma(camera, live.map);
     const BundleResult result = adjust_bundle(camera, std::move(live.map), bundle);
     summary.iterations += result.iterations;
     summary.seconds += result.seconds;
-    SightingCut cut = remove_outlying_sightings(camera, result.map, kCutSigmas * reprojection_sigma(camera, result.map));
+    SightingCut cut =
+        remove_outlying_sightings(camera, result.map, kCutSigmas * reprojection_sigma(camera, result.map));
     summary.sightings_removed += cut.removed;
     live.map = std::move(cut.map);
     release_removed_sightings(live);

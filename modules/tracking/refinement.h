@@ -20,7 +20,7 @@ struct RefinementSummary {
   int sightings_removed = 0;
   int iterations = 0;
   double seconds = 0;
-  double focal_factor = 1.0;        ///< the factor on the focal length that would fit best
+  double focal_factor = 1.0;  ///< the factor on the focal length that would fit best
   double focal_factor_sigma = 0.0;
 };
 

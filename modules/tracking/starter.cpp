@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/starter.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include <fmt/format.h>
 
 #include "estimation/pose_update.h"
 #include "features/matching.h"
@@ -96,8 +96,8 @@ std::optional<StartedMap> MapStarter::try_descriptors(const ImageFrame& frame) {
   const auto matches = match_descriptors(reference_features_.descriptors, features.descriptors, options_.ratio);
   std::vector<PixelPair> pairs;
   for (const Match& m : matches) {
-    pairs.push_back({reference_features_.pixels[static_cast<std::size_t>(m.a)],
-                     features.pixels[static_cast<std::size_t>(m.b)]});
+    pairs.push_back(
+        {reference_features_.pixels[static_cast<std::size_t>(m.a)], features.pixels[static_cast<std::size_t>(m.b)]});
   }
   const TwoViewGeometry geometry = solve_two_views(camera_, pairs, options_.two_view);
   reason_ = explain(geometry, options_.two_view);
@@ -116,7 +116,8 @@ StartedMap MapStarter::build(const ImageFrame& frame, Features features, const s
 
   LiveMap& live = started.live;
   NewKeyframe a{{reference_->index, reference_->time, reference_->name, T_world_a, Matrix6d::Zero(), {}},
-                reference_features_, {}};
+                reference_features_,
+                {}};
   NewKeyframe b{{frame.index, frame.time, frame.name, T_world_b, Matrix6d::Zero(), {}}, std::move(features), {}};
   live = with_keyframe(with_keyframe({}, std::move(a), options_.sigma_px), std::move(b), options_.sigma_px);
   std::vector<Match> agreed;

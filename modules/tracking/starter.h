@@ -19,10 +19,10 @@ struct StarterOptions {
   SiftOptions sift;
   FlowOptions flow;
   TwoViewOptions two_view;
-  double ratio = 0.8;               ///< of descriptor distances
-  double sigma_px = 1.0;            ///< of a feature
-  double least_motion_share = 0.01; ///< of the image width that the tracks must have moved before geometry is tried
-  double least_survivors = 0.3;     ///< of the reference's features still followed; below it the reference moves on
+  double ratio = 0.8;                ///< of descriptor distances
+  double sigma_px = 1.0;             ///< of a feature
+  double least_motion_share = 0.01;  ///< of the image width that the tracks must have moved before geometry is tried
+  double least_survivors = 0.3;      ///< of the reference's features still followed; below it the reference moves on
 };
 
 /// A map of two keyframes, and the frames between them.
