@@ -13,7 +13,7 @@ namespace {
 
 Eigen::Vector2d undistort_or_throw(const Camera& camera, const Eigen::Vector2d& pixel) {
   const auto xy = undistort(camera, pixel);
-  if (!xy) throw std::invalid_argument("LensWarp: the distortion has no inverse in a part of the image");
+  if (!xy) throw std::invalid_argument("the distortion has no inverse in a part of the image");
   return *xy;
 }
 
@@ -34,7 +34,7 @@ Camera widened(const Camera& camera) {
   wide.width = static_cast<int>(std::ceil(wide.cx + seen.max().x() * camera.fx + kMargin_px));
   wide.height = static_cast<int>(std::ceil(wide.cy + seen.max().y() * camera.fy + kMargin_px));
   if (wide.width > 3 * camera.width || wide.height > 3 * camera.height) {
-    throw std::invalid_argument("LensWarp: the distortion takes more than three times the image");
+    throw std::invalid_argument("the distortion takes more than three times the image");
   }
   return wide;
 }

@@ -59,7 +59,7 @@ std::vector<Eigen::Vector3d> places_of(const Scene& scene) {
   std::vector<Eigen::Vector3d> places;
   for (const auto& point : scene.points) places.push_back(point.p_world);
   for (const auto& camera : scene.cameras) {
-    const auto corners = pyramid_corners(camera, camera.depth_m > 0 ? camera.depth_m : scene.pyramid_depth_m);
+    const auto corners = pyramid_corners(camera, scene);
     places.insert(places.end(), corners.begin(), corners.end());
   }
   for (const auto& path : scene.paths) places.insert(places.end(), path.points_world.begin(), path.points_world.end());

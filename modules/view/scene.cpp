@@ -42,10 +42,10 @@ double median_distance(const PointMap& map, const Eigen::Vector3d& from) {
 
 // A pyramid that can be seen beside its path and does not hide it: a share of the path, or of the distance to the map
 // where the camera hardly moved.
-double pyramid_depth(const TrackPicture& picture) {
-  if (picture.estimate.empty()) return Scene{}.pyramid_depth_m;
-  const double path = extent_of_centres(picture.estimate);
-  const double map = median_distance(picture.map, picture.estimate.front().T_world_camera.translation());
+double pyramid_depth(const Trajectory& trajectory, const PointMap& points) {
+  if (trajectory.empty()) return Scene{}.pyramid_depth_m;
+  const double path = extent_of_centres(trajectory);
+  const double map = median_distance(points, trajectory.front().T_world_camera.translation());
   const double depth = std::max(0.07 * path, 0.025 * map);
   return depth > 0 ? depth : Scene{}.pyramid_depth_m;
 }
@@ -55,6 +55,11 @@ std::size_t pyramids_that_fit(const Trajectory& trajectory, double depth_m) {
   constexpr double kSpacing = 1.3;  // in depths of a pyramid
   const double fitting = path_length(trajectory) / (kSpacing * depth_m);
   return static_cast<std::size_t>(std::clamp(fitting, 12.0, 40.0));
+}
+
+// Few points are drawn larger, so that the map can be seen.
+double point_size_px(std::size_t count) {
+  return std::clamp(7.5 - 1.1 * std::log10(static_cast<double>(count) + 1.0), 2.0, 5.0);
 }
 
 // A solid pyramid stands inside the hollow one of the same pose.
@@ -68,6 +73,17 @@ void append(std::vector<T>& all, const std::vector<T>& more) {
 }
 
 }  // namespace
+
+std::vector<Eigen::Vector3d> pyramid_corners(const CameraPyramid& pyramid, const Scene& scene) {
+  const double depth_m = pyramid.depth_m > 0 ? pyramid.depth_m : scene.pyramid_depth_m;
+  const double x = pyramid.half_extent.x(), y = pyramid.half_extent.y();
+  std::vector<Eigen::Vector3d> corners{pyramid.T_world_camera.translation()};
+  for (const Eigen::Vector3d& d :
+       {Eigen::Vector3d(-x, -y, 1), Eigen::Vector3d(x, -y, 1), Eigen::Vector3d(x, y, 1), Eigen::Vector3d(-x, y, 1)}) {
+    corners.push_back(pyramid.T_world_camera * Eigen::Vector3d(d * depth_m));
+  }
+  return corners;
+}
 
 std::vector<ScenePoint> scene_points(const PointMap& map, std::size_t most) {
   std::vector<ScenePoint> points;
@@ -107,8 +123,11 @@ Scene track_scene(const TrackPicture& picture) {
   Scene scene;
   scene.title = picture.title;
   scene.points = scene_points(picture.map);
-  scene.pyramid_depth_m = pyramid_depth(picture);
-  const std::size_t most = pyramids_that_fit(picture.estimate, scene.pyramid_depth_m);
+  scene.point_size_px = point_size_px(scene.points.size());
+  const bool estimated = !picture.estimate.empty();
+  const Trajectory& leading = estimated || !picture.truth ? picture.estimate : *picture.truth;
+  scene.pyramid_depth_m = pyramid_depth(leading, picture.map);
+  const std::size_t most = pyramids_that_fit(leading, scene.pyramid_depth_m);
   if (picture.truth) {
     scene.paths.push_back(scene_path(*picture.truth, palette::kTruth));
     auto solid = scene_pyramids(*picture.truth, PyramidStyle::Solid, palette::kTruth, picture.camera, most);
@@ -116,10 +135,12 @@ Scene track_scene(const TrackPicture& picture) {
     append(scene.cameras, solid);
     scene.legend.push_back({"true cameras", palette::kTruth, PyramidStyle::Solid});
   }
-  scene.paths.push_back(scene_path(picture.estimate, palette::kEstimate));
-  append(scene.cameras,
-         scene_pyramids(picture.estimate, PyramidStyle::Hollow, palette::kEstimate, picture.camera, most));
-  scene.legend.push_back({"estimated cameras", palette::kEstimate, PyramidStyle::Hollow});
+  if (estimated) {
+    scene.paths.push_back(scene_path(picture.estimate, palette::kEstimate));
+    append(scene.cameras,
+           scene_pyramids(picture.estimate, PyramidStyle::Hollow, palette::kEstimate, picture.camera, most));
+    scene.legend.push_back({"estimated cameras", palette::kEstimate, PyramidStyle::Hollow});
+  }
   return scene;
 }
 

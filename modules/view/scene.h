@@ -74,6 +74,10 @@ struct Scene {
   double pyramid_depth_m = 0.1;
 };
 
+/// The five corners of a camera's pyramid in the world: apex, then the base clockwise from the top left as the camera
+/// sees it. `scene`: gives the depth where the pyramid leaves it open.
+std::vector<Eigen::Vector3d> pyramid_corners(const CameraPyramid& pyramid, const Scene& scene);
+
 /// The points of a map, evenly thinned to at most `most` (software drawing shows a million at 0.5 frames/s).
 std::vector<ScenePoint> scene_points(const PointMap& map, std::size_t most = 200'000);
 

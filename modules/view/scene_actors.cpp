@@ -117,7 +117,7 @@ void add_pyramids(vtkRenderer& stage, const Scene& scene, const Eigen::Vector3d&
   ColouredMesh sides(origin), edges(origin);
   for (const auto& camera : scene.cameras) {
     if (!camera.T_world_camera.matrix().allFinite()) continue;
-    const auto corners = pyramid_corners(camera, camera.depth_m > 0 ? camera.depth_m : scene.pyramid_depth_m);
+    const auto corners = pyramid_corners(camera, scene);
     const bool solid = camera.style == PyramidStyle::Solid;
     if (solid) add_sides(sides, corners, camera.colour);
     add_edges(edges, corners, solid ? shaded(camera.colour, 0.5) : camera.colour);
@@ -195,16 +195,6 @@ void fill_stage(vtkRenderer& stage, const Scene& scene, const Eigen::Vector3d& o
   add_points(stage, scene, origin, enlargement);
   for (const auto& path : scene.paths) add_path(stage, path, origin, enlargement);
   add_pyramids(stage, scene, origin, enlargement);
-}
-
-std::vector<Eigen::Vector3d> pyramid_corners(const CameraPyramid& pyramid, double depth_m) {
-  const double x = pyramid.half_extent.x(), y = pyramid.half_extent.y();
-  std::vector<Eigen::Vector3d> corners{pyramid.T_world_camera.translation()};
-  for (const Eigen::Vector3d& d :
-       {Eigen::Vector3d(-x, -y, 1), Eigen::Vector3d(x, -y, 1), Eigen::Vector3d(x, y, 1), Eigen::Vector3d(-x, y, 1)}) {
-    corners.push_back(pyramid.T_world_camera * Eigen::Vector3d(d * depth_m));
-  }
-  return corners;
 }
 
 }  // namespace alidade

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <vector>
-
 #include <Eigen/Core>
 
 #include "view/scene.h"
@@ -15,9 +13,5 @@ namespace alidade {
 /// points and lines `enlargement` times as thick as the scene says. Whatever stood there before is removed.
 /// Throws std::invalid_argument for a surface whose parts do not fit each other.
 void fill_stage(vtkRenderer& stage, const Scene& scene, const Eigen::Vector3d& origin, double enlargement);
-
-/// The five corners of a camera's pyramid in the world: apex, then the base clockwise from the top left as the camera
-/// sees it.
-std::vector<Eigen::Vector3d> pyramid_corners(const CameraPyramid& pyramid, double depth_m);
 
 }  // namespace alidade

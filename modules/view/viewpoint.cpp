@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace alidade {
@@ -50,9 +51,7 @@ std::vector<Eigen::Vector3d> firm_points(const Scene& scene) {
     if (p.allFinite()) points.push_back(p);
   };
   for (const auto& camera : scene.cameras) {
-    const double depth = camera.depth_m > 0 ? camera.depth_m : scene.pyramid_depth_m;
-    add(camera.T_world_camera.translation());
-    add(camera.T_world_camera * Eigen::Vector3d(0, 0, depth));
+    std::ranges::for_each(pyramid_corners(camera, scene), add);
   }
   for (const auto& path : scene.paths) std::ranges::for_each(path.points_world, add);
   for (const auto& surface : scene.surfaces) std::ranges::for_each(surface.vertices_world, add);

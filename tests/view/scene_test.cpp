@@ -77,6 +77,30 @@ TEST(TrackScene, ShowsTruthSolidAndEstimateHollow) {
   EXPECT_EQ(track_scene(picture).cameras.size(), 10u);
 }
 
+TEST(PyramidCorners, SpanTheViewAtTheDepth) {
+  CameraPyramid pyramid;
+  pyramid.T_world_camera.translation() = Eigen::Vector3d(1, 2, 3);
+  pyramid.half_extent = {0.5, 0.4};
+  Scene scene;
+  scene.pyramid_depth_m = 2;
+  const auto corners = pyramid_corners(pyramid, scene);
+  ASSERT_EQ(corners.size(), 5u);
+  EXPECT_TRUE(corners[0].isApprox(Eigen::Vector3d(1, 2, 3)));
+  EXPECT_TRUE(corners[1].isApprox(Eigen::Vector3d(0, 1.2, 5)));
+  EXPECT_TRUE(corners[3].isApprox(Eigen::Vector3d(2, 2.8, 5)));
+  pyramid.depth_m = 1;
+  EXPECT_TRUE(pyramid_corners(pyramid, scene)[3].isApprox(Eigen::Vector3d(1.5, 2.4, 4)));
+}
+
+TEST(TrackScene, ShowsATruthAlone) {
+  TrackPicture picture;
+  picture.truth = line(10);
+  const Scene scene = track_scene(picture);
+  EXPECT_EQ(scene.cameras.size(), 10u);
+  EXPECT_EQ(scene.legend.size(), 1u);
+  EXPECT_GT(scene.pyramid_depth_m, 0.02 * 9);
+}
+
 TEST(TrackScene, HasPyramidsToSeeWhereTheCameraOnlyTurned) {
   TrackPicture picture;
   picture.estimate = {StampedPose{}, StampedPose{}};
