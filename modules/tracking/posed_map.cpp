@@ -2,8 +2,14 @@
 #include "tracking/posed_map.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
+
+#include <Eigen/LU>
+
+#include "reconstruction/epipolar_matching.h"
 
 #include <Eigen/LU>
 
@@ -85,6 +91,44 @@ LiveMap with_depth(const Camera& camera, LiveMap live, const PosedImage& image, 
   return live;
 }
 
+std::vector<Match> match_free_features(const Camera& camera, const LiveMap& pair, const GrowthOptions& options) {
+  std::array<std::vector<int>, 2> free;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::vector<int>& point_of_feature = pair.features[i].point_of_feature;
+    for (std::size_t f = 0; f < point_of_feature.size(); ++f) {
+      if (point_of_feature[f] < 0) free[i].push_back(static_cast<int>(f));
+    }
+  }
+  EpipolarOptions epipolar;
+  epipolar.ratio = options.ratio;
+  return match_along_epipolar_lines(
+      camera, {pair.features[0].features, free[0], pair.map.keyframes[0].T_world_camera},
+      {pair.features[1].features, free[1], pair.map.keyframes[1].T_world_camera}, epipolar);
+}
+
+// New points of the last image and the few just before it, where no known points tell which of the images overlap.
+LiveMap with_points_of_recent_images(const Camera& camera, LiveMap live, const cv::Mat& image,
+                                     const GrowthOptions& options) {
+  const std::size_t last = live.map.keyframes.size() - 1;
+  const std::size_t first = last - std::min(last, static_cast<std::size_t>(options.neighbours));
+  for (std::size_t k = last; k-- > first;) {
+    LiveMap pair;  // all points, two of the keyframes
+    pair.map.points = std::move(live.map.points);
+    for (const std::size_t i : {k, last}) {
+      pair.map.keyframes.push_back(std::move(live.map.keyframes[i]));
+      pair.features.push_back(std::move(live.features[i]));
+    }
+    const std::vector<Match> matches = match_free_features(camera, pair, options);
+    pair = with_points_of_pair(camera, std::move(pair), matches, image, options);
+    live.map.points = std::move(pair.map.points);
+    for (const auto& [from, to] : {std::pair<std::size_t, std::size_t>{0, k}, {1, last}}) {
+      live.map.keyframes[to] = std::move(pair.map.keyframes[from]);
+      live.features[to] = std::move(pair.features[from]);
+    }
+  }
+  return live;
+}
+
 }  // namespace
 
 LiveMap with_posed_image(const Camera& camera, LiveMap live, const PosedImage& image, const PosedMapOptions& options) {
@@ -103,8 +147,12 @@ LiveMap with_posed_image(const Camera& camera, LiveMap live, const PosedImage& i
   live = with_keyframe(std::move(live), std::move(added), options.growth.sigma_px);
   if (!image.depth.empty()) return with_depth(camera, std::move(live), image, options);
   live = with_retriangulated_points(camera, std::move(live));
-  return with_new_points(camera, std::move(live), image.frame.colour.empty() ? image.frame.grey : image.frame.colour,
-                         options.growth);
+  const cv::Mat& colours = image.frame.colour.empty() ? image.frame.grey : image.frame.colour;
+  constexpr std::size_t kEnough = 16;  // shared points from which map growth takes a keyframe for a neighbour
+  if (live.map.keyframes.back().sightings.size() < kEnough) {
+    return with_points_of_recent_images(camera, std::move(live), colours, options.growth);
+  }
+  return with_new_points(camera, std::move(live), colours, options.growth);
 }
 
 }  // namespace alidade
