@@ -73,9 +73,11 @@ Eigen::Isometry3d marker_frame(const MarkerCorners& c) {  // corners clockwise f
   return T_map_marker;
 }
 
-int most_frequent_marker(const std::vector<FrameMarkers>& seen) {
+// Among the frames with poses; -1 where there is none.
+int most_frequent_marker(const std::vector<FrameReport>& reports, const std::vector<FrameMarkers>& seen) {
   std::map<int, int> count;
   for (const FrameMarkers& frame : seen) {
+    if (!posed_report(reports, frame.frame)) continue;
     for (const MarkerSighting& marker : frame.markers) ++count[marker.id];
   }
   const auto most =
@@ -147,7 +149,7 @@ std::optional<Similarity> similarity_from_distance(const std::vector<FrameReport
 std::optional<Similarity> similarity_from_marker(const Camera& camera, const std::vector<FrameReport>& reports,
                                                  const std::vector<FrameMarkers>& seen, double side_m,
                                                  std::optional<int> id) {
-  const auto corners = triangulate_corners(camera, reports, seen, id.value_or(most_frequent_marker(seen)));
+  const auto corners = triangulate_corners(camera, reports, seen, id.value_or(most_frequent_marker(reports, seen)));
   if (!corners) return std::nullopt;
   const auto side = side_of_square(*corners);
   if (!side) return std::nullopt;

@@ -38,8 +38,8 @@ struct FrameMarkers {
 };
 
 /// From a square marker of side `side_m` that at least two posed frames show: the scale, and the frame of the marker
-/// (origin in its centre, x to its right, y up along it, z out of it). Of several markers the one seen most often is
-/// taken; `id` picks one. Empty where none is seen twice or its corners do not form a square (sides within 5 %).
+/// (origin in its centre, x to its right, y up along it, z out of it). Of several markers the one seen in most of these
+/// frames is taken; `id` picks one. Empty where none is seen twice or its corners form no square (sides within 5 %).
 std::optional<Similarity> similarity_from_marker(const Camera& camera, const std::vector<FrameReport>& reports,
                                                  const std::vector<FrameMarkers>& seen, double side_m,
                                                  std::optional<int> id = std::nullopt);
