@@ -11,8 +11,6 @@
 
 #include "reconstruction/epipolar_matching.h"
 
-#include <Eigen/LU>
-
 namespace alidade {
 namespace {
 
@@ -101,9 +99,9 @@ std::vector<Match> match_free_features(const Camera& camera, const LiveMap& pair
   }
   EpipolarOptions epipolar;
   epipolar.ratio = options.ratio;
-  return match_along_epipolar_lines(
-      camera, {pair.features[0].features, free[0], pair.map.keyframes[0].T_world_camera},
-      {pair.features[1].features, free[1], pair.map.keyframes[1].T_world_camera}, epipolar);
+  return match_along_epipolar_lines(camera, {pair.features[0].features, free[0], pair.map.keyframes[0].T_world_camera},
+                                    {pair.features[1].features, free[1], pair.map.keyframes[1].T_world_camera},
+                                    epipolar);
 }
 
 // New points of the last image and the few just before it, where no known points tell which of the images overlap.
