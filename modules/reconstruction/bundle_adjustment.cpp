@@ -9,11 +9,17 @@
 #include <Eigen/Geometry>
 #include <ceres/ceres.h>
 #include <fmt/format.h>
+#include <glog/logging.h>
 
 #include "geometry/rotation.h"
 
 namespace alidade {
 namespace {
+
+// Ceres writes what it thinks of a step to stderr through glog, whatever its own logging_type; the summary tells us.
+void keep_ceres_quiet() {
+  FLAGS_minloglevel = google::GLOG_FATAL;
+}
 
 // A pose as Ceres sees it: quaternion x y z w of R_world_camera, then the centre.
 using PoseBlock = std::array<double, 7>;
@@ -256,6 +262,7 @@ BundleResult adjust_bundle(const Camera& camera, PointMap map, const BundleOptio
   if (!options.refine_focal) problem.SetParameterBlockConstant(&blocks.focal_factor);
 
   ceres::Solver::Summary summary;
+  keep_ceres_quiet();
   ceres::Solve(solver_options(options, blocks, problem), &problem, &summary);
   result.iterations = static_cast<int>(summary.iterations.size());
   result.seconds = summary.total_time_in_seconds;
