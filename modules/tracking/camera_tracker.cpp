@@ -155,7 +155,12 @@ FrameReport CameraTracker::track(const ImageFrame& frame, const FlowImage& flow)
   } else {
     if (has_pose_ && missed_ == 0) attempt = follow(predicted, flow);
     if (!is_believable(attempt) && has_pose_) attempt = search(predicted, frame);
-    if (!is_believable(attempt)) attempt = relocalise(predicted, frame, std::move(attempt.features));
+    if (!is_believable(attempt)) {
+      attempt = relocalise(predicted, frame, std::move(attempt.features));
+    } else if (is_weak(attempt)) {  // where the motion was not foreseen, a search about it finds chance matches
+      Attempt anywhere = relocalise(predicted, frame, attempt.features);
+      if (is_believable(anywhere) && anywhere.update->inlier_count > attempt.update->inlier_count) attempt = anywhere;
+    }
   }
   // 3. Update (eqs. 8-13), or say that the camera is lost.
   if (!is_believable(attempt)) return lose(frame, predicted);
@@ -283,6 +288,12 @@ double CameraTracker::median_range(const Eigen::Isometry3d& T_world_camera,
 bool CameraTracker::is_believable(const Attempt& attempt) const {
   if (!attempt.update || attempt.update->inlier_count < options_.least_inliers) return false;
   return attempt.update->inlier_count >= options_.least_inlier_share * static_cast<double>(attempt.found.size());
+}
+
+bool CameraTracker::is_weak(const Attempt& attempt) const {
+  if (!attempt.features || live_.map.keyframes.empty()) return false;
+  const auto known = static_cast<double>(live_.map.keyframes.back().sightings.size());
+  return attempt.update->inlier_count < options_.weak_share * known;
 }
 
 FrameReport CameraTracker::accept(const ImageFrame& frame, const CameraState& predicted, Attempt attempt) {

@@ -32,8 +32,10 @@ struct CameraTrackerOptions {
   StarterOptions start;
   PoseUpdateOptions update;
   GrowthOptions growth;
-  double sigma_px = 1.0;               ///< of a feature, until the residuals have told better
-  int most_tracks = 600;               ///< points followed by flow; more add time, hardly accuracy
+  double sigma_px = 1.0;  ///< of a feature, until the residuals have told better
+  int most_tracks = 600;  ///< points followed by flow; more add time, hardly accuracy
+  double weak_share =
+      0.3;  ///< of the last keyframe's points; a search with fewer inliers is compared with a match anywhere
   double least_flow_share = 0.3;       ///< of the points followed; below it flow has lost its hold and SIFT is asked
   int least_inliers = 20;              ///< a pose from fewer points is not believed
   double least_inlier_share = 0.35;    ///< of the points found; a pose that most of them contradict is not believed
@@ -97,6 +99,7 @@ class CameraTracker {
                                      bool use_prior) const;
   double median_range(const Eigen::Isometry3d& T_world_camera, const std::vector<FoundPoint>& found) const;
   bool is_believable(const Attempt& attempt) const;
+  bool is_weak(const Attempt& attempt) const;
 
   FrameReport accept(const ImageFrame& frame, const CameraState& predicted, Attempt attempt);
   std::vector<FrameExpectation> expectations(const CameraState& predicted, const std::vector<FoundPoint>& found) const;
