@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Images made for a measurement, on the standard library alone: black ones, noise, a texture seen by a turning camera."""
+"""Images made for a measurement, on the standard library alone: a texture seen by a turning camera."""
 
 import math
 import random
@@ -16,10 +16,6 @@ def write_png(path, width, height, rows):
     header = struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0)
     path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(pixels, 1)) +
                      chunk(b"IEND", b""))
-
-
-def write_black(path, width, height):
-    write_png(path, width, height, (bytes(width) for _ in range(height)))
 
 
 class BlobTexture:

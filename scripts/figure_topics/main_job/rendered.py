@@ -5,18 +5,20 @@ import csv
 import json
 import math
 import re
-import shutil
 import signal
-import struct
 import subprocess
 
 from figure_topics.bench import ROOT, frames, pose_count, summary
 from figure_topics.figure import Fact, Failed, Figure, Section
-from figure_topics.images import write_black
 
 BLACK_FRAMES = 40
 PERCENT = 100.0
+MARKER_M = 0.2
 FRAME_A, FRAME_B = 0, 60  # whose distance is told
+
+
+def track_scene(bench, scene, name, *words):
+    return bench.track(scene, scene / "camera.yaml", name, *words)[0]
 
 
 def measure_demo(bench):
@@ -37,10 +39,10 @@ DEMO = Section("demo", [
 
 
 def measure_speed(bench):
-    scene = bench.scene()
-    camera = scene / "camera.yaml"
-    guided, _ = bench.track(scene, camera, "speed/guided", "--refine", "none")
-    brute, _ = bench.track(scene, camera, "speed/sift-per-frame", "--refine", "none", "--features", "sift")
+    movie = bench.scene("scene-movie", "--form", "movie")
+    sequential = [movie / "video.mp4", movie / "camera.yaml"]
+    guided, _ = bench.track(*sequential, "speed/guided", "--refine", "none")
+    brute, _ = bench.track(*sequential, "speed/sift-per-frame", "--refine", "none", "--features", "sift")
     rates = [summary(result)["frames_per_s"] for result in (guided, brute)]
     yield "speed/guided", rates[0]
     yield "speed/sift-per-frame", rates[1]
@@ -56,7 +58,7 @@ SPEED = Section("speed", [
 
 def measure_repeat(bench):
     scene = bench.scene()
-    results = [bench.track(scene, scene / "camera.yaml", f"repeat/{i}", "--seed", 7)[0] for i in (1, 2)]
+    results = [track_scene(bench, scene, f"repeat/{i}", "--seed", 7) for i in (1, 2)]
     files = [(result / "trajectory.tum").read_bytes() for result in results]
     yield "repeat/same-seed-same-trajectory", Fact("equal" if files[0] == files[1] else "differs", files[0] == files[1])
 
@@ -64,30 +66,15 @@ def measure_repeat(bench):
 REPEAT = Section("repeat", [Figure("repeat/same-seed-same-trajectory", expected="bit-equal")], measure_repeat)
 
 
-def png_size(path):
-    return struct.unpack(">II", path.read_bytes()[16:24])
-
-
-def with_black_frames(bench, scene):
-    """A copy of the scene's images in which BLACK_FRAMES in the middle are black; and the first of them."""
-    folder = bench.fresh("relocalisation/images")
-    shutil.copytree(scene / "images", folder)
-    images = sorted(folder.glob("*.png"))
-    first = (len(images) - BLACK_FRAMES) // 2
-    for image in images[first:first + BLACK_FRAMES]:
-        write_black(image, *png_size(image))
-    return folder, first
-
-
 def rms(values):
     return math.sqrt(sum(value * value for value in values) / len(values)) if values else math.inf
 
 
 def measure_relocalisation(bench):
-    scene = bench.scene("scene-images", "--images")
-    folder, first_black = with_black_frames(bench, scene)
-    out, _ = bench.track(folder, scene / "camera.yaml", "relocalisation/track", "--refine", "none")
+    first_black = 130
     back = first_black + BLACK_FRAMES
+    scene = bench.scene("scene-black", "--black-from", first_black, "--black-count", BLACK_FRAMES)
+    out = track_scene(bench, scene, "relocalisation/track", "--refine", "none")
     states = [row["state"] for row in frames(out)]
     posed = next((i for i, state in enumerate(states[back:]) if state == "tracked"), len(states))
     yield "relocalisation/frames-until-pose", posed + 1
@@ -112,7 +99,7 @@ RELOCALISATION = Section("relocalisation", [
 
 
 def scale_error_percent(bench, scene, name, *words):
-    out, _ = bench.track(scene, scene / "camera.yaml", name, *words)
+    out = track_scene(bench, scene, name, *words)
     return PERCENT * abs(bench.evaluate(out / "trajectory.tum", scene / "truth.tum", "--align", "sim3")["scale"] - 1)
 
 
@@ -128,8 +115,8 @@ def measure_scale(bench):
     yield "scale/init-poses", scale_error_percent(bench, scene, "scale/init-poses", "--init-poses", scene / "truth.tum")
     distance = f"distance:{FRAME_A}:{FRAME_B}:{distance_m(scene / 'truth.tum', FRAME_A, FRAME_B):.9g}"
     yield "scale/distance", scale_error_percent(bench, scene, "scale/distance", "--scale", distance)
-    marked = bench.scene("scene-marker", "--marker")
-    yield "scale/marker", scale_error_percent(bench, marked, "scale/marker", "--scale", "marker:0.2")
+    marked = bench.scene("scene-marker", "--marker-m", MARKER_M)
+    yield "scale/marker", scale_error_percent(bench, marked, "scale/marker", "--scale", f"marker:{MARKER_M}")
 
 
 SCALE = Section("scale", [
