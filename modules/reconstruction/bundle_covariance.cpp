@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reconstruction/bundle_covariance.h"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -108,9 +106,7 @@ PointMap with_covariances(const Camera& camera, PointMap map, const BundleOption
       for (const auto& [column, W_column] : point.W) S.block<6, 6>(row, column) -= weighted * W_column.transpose();
     }
   }
-  // The residuals themselves tell how good the sightings are; their sigma_px was a guess.
-  const double variance = std::pow(std::clamp(reprojection_sigma(camera, map), 0.1, 3.0), 2);
-  const Eigen::MatrixXd C = variance * S.ldlt().solve(Eigen::MatrixXd::Identity(S.rows(), S.cols()));
+  const Eigen::MatrixXd C = S.ldlt().solve(Eigen::MatrixXd::Identity(S.rows(), S.cols()));
   if (!C.allFinite()) return map;
 
   for (int k : options.free_keyframes) {
@@ -120,7 +116,7 @@ PointMap with_covariances(const Camera& camera, PointMap map, const BundleOption
   for (std::size_t i = 0; i < N.points.size(); ++i) {
     const PointBlock& point = N.points[i];
     if (point.sightings < 2 || point.W.empty()) continue;
-    Eigen::Matrix3d spread = variance * point.V;
+    Eigen::Matrix3d spread = point.V;
     for (const auto& [row, W_row] : point.W) {
       for (const auto& [column, W_column] : point.W) {
         spread += W_row.transpose() * C.block<6, 6>(row, column) * W_column;
