@@ -140,6 +140,7 @@ nlohmann::json summary_of(const TrackRecord& record) {
                              {"rms_px_after", refinement->rms_px_after},
                              {"sightings", refinement->sightings},
                              {"sightings_added", refinement->sightings_added},
+                             {"sightings_aligned", refinement->sightings_aligned},
                              {"sightings_removed", refinement->sightings_removed},
                              {"iterations", refinement->iterations},
                              {"seconds", refinement->seconds},

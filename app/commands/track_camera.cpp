@@ -109,10 +109,10 @@ class TrackCameraCommand : public Command {
     record.reports = tracker.reports();
     LiveMap live = tracker.live_map();
     if (refine_ == Refine::Global && !record.interrupted && live.map.keyframes.size() >= 2) {
-      context.progress({"refining", 0, 1, ""});
-      RefinedTrack refined = refine_globally(record.camera, std::move(live), std::move(record.reports),
-                                             tracker.options(), tracker.anchored_keyframes());
-      context.progress({"refining", 1, 1, ""});
+      RefinedTrack refined =
+          refine_globally(record.camera, std::move(live), std::move(record.reports), tracker.options(),
+                          tracker.anchored_keyframes(), context.progress, context.stop);
+      record.interrupted = context.stop.stop_requested();
       live = std::move(refined.live);
       record.reports = std::move(refined.reports);
       record.refinement = refined.summary;

@@ -428,6 +428,7 @@ void CameraTracker::add_keyframe(const ImageFrame& frame, Attempt& attempt) {
   added.keyframe = {frame.index, frame.time, frame.name, attempt.update->T_world_camera, attempt.update->covariance,
                     {}};
   added.features = *attempt.features;
+  added.grey = frame.grey;
   added.found = inliers_of(attempt.found, *attempt.update);
   live_ = with_keyframe(std::move(live_), std::move(added), options_.sigma_px);
   if (!options_.local_refinement) live_ = with_retriangulated_points(camera_, std::move(live_));

@@ -13,6 +13,7 @@ namespace alidade {
 struct KeyframeFeatures {
   Features features;
   std::vector<int> point_of_feature;
+  cv::Mat grey;  ///< the image, for align_sightings
 };
 
 /// The map while it grows: what is published, and the features that it grows from (one entry per keyframe).

@@ -110,6 +110,7 @@ LiveMap with_keyframe(LiveMap live, NewKeyframe added, double sigma_px) {
   KeyframeFeatures frame;
   frame.point_of_feature.assign(static_cast<std::size_t>(added.features.size()), -1);
   frame.features = std::move(added.features);
+  frame.grey = added.grey;
   for (const FoundPoint& found : added.found) {
     added.keyframe.sightings.push_back({found.point, found.pixel, sigma_px});
     if (found.feature >= 0) frame.point_of_feature[static_cast<std::size_t>(found.feature)] = found.point;

@@ -25,6 +25,7 @@ struct NewKeyframe {
   Keyframe keyframe;
   Features features;
   std::vector<FoundPoint> found;
+  cv::Mat grey;
 };
 LiveMap with_keyframe(LiveMap live, NewKeyframe added, double sigma_px);
 

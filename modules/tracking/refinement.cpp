@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numeric>
 
 #include <fmt/format.h>
 
 #include "reconstruction/bundle_covariance.h"
+#include "tracking/sighting_alignment.h"
 
 namespace alidade {
 namespace {
@@ -33,42 +35,60 @@ std::optional<std::string> doubt_focal_length(const Camera& camera, const Refine
 }
 
 RefinedTrack refine_globally(const Camera& camera, LiveMap live, std::vector<FrameReport> reports,
-                             const CameraTrackerOptions& options, int anchored) {
+                             const CameraTrackerOptions& options, int anchored, const ProgressSink& progress,
+                             const std::stop_token& stop) {
   RefinedTrack refined;
   RefinementSummary& summary = refined.summary;
   summary.rms_px_before = reprojection_rms_px(camera, live.map);
   BundleOptions bundle = global_bundle_options(live.map, anchored);
   bundle.max_iterations = 25;
-  for (double radius_px : {5.0, 3.0}) {
+  const auto complete = [&](double radius_px) {
     auto completion =
         complete_sightings(camera, std::move(live), living_points(live.map), all_keyframes(live.map), radius_px);
     live = std::move(completion.live);
     summary.sightings_added += completion.added;
+  };
+  const auto align = [&] {
+    SightingAlignment alignment = align_sightings(camera, std::move(live));
+    live = std::move(alignment.live);
+    summary.sightings_aligned = alignment.aligned;
+  };
+  const auto adjust = [&] {
     bundle.loss_sigmas = kLossSigmas * reprojection_sigma(camera, live.map);
-    const BundleResult result = adjust_bundle(camera, std::move(live.map), bundle);
+    BundleResult result = adjust_bundle(camera, std::move(live.map), bundle);
+    live.map = std::move(result.map);
     summary.iterations += result.iterations;
     summary.seconds += result.seconds;
-    SightingCut cut =
-        remove_outlying_sightings(camera, result.map, kCutSigmas * reprojection_sigma(camera, result.map));
-    summary.sightings_removed += cut.removed;
-    live.map = std::move(cut.map);
+    summary.sightings = result.sighting_count;
+  };
+  const auto cut = [&] {
+    SightingCut tidied =
+        remove_outlying_sightings(camera, std::move(live.map), kCutSigmas * reprojection_sigma(camera, live.map));
+    live.map = std::move(tidied.map);
+    summary.sightings_removed += tidied.removed;
     release_removed_sightings(live);
+  };
+  const auto check_focal_length = [&] {
+    bundle.refine_focal = true;
+    const BundleResult focal = adjust_bundle(camera, live.map, bundle);
+    summary.focal_factor = focal.focal_factor;
+    summary.focal_factor_sigma = focal.focal_factor_sigma;
+  };
+  const std::vector<std::function<void()>> steps{
+      [&] { complete(5.0); }, adjust, cut, [&] { complete(3.0); }, adjust, cut, align, adjust, cut, adjust, cut, adjust,
+      check_focal_length};
+  for (std::size_t i = 0; i < steps.size() && !stop.stop_requested(); ++i) {
+    if (progress) progress({"refining", static_cast<std::int64_t>(i), static_cast<std::int64_t>(steps.size()), ""});
+    steps[i]();
   }
-  bundle.loss_sigmas = kLossSigmas * reprojection_sigma(camera, live.map);
-  BundleResult last = adjust_bundle(camera, std::move(live.map), bundle);
-  summary.iterations += last.iterations;
-  summary.seconds += last.seconds;
-  summary.sightings = last.sighting_count;
-  live.map = with_covariances(camera, std::move(last.map), bundle);
+  bundle.refine_focal = false;
+  live.map = with_covariances(camera, std::move(live.map), bundle);
   summary.rms_px_after = reprojection_rms_px(camera, live.map);
-
-  bundle.refine_focal = true;
-  const BundleResult focal = adjust_bundle(camera, live.map, bundle);
-  summary.focal_factor = focal.focal_factor;
-  summary.focal_factor_sigma = focal.focal_factor_sigma;
-
   refined.reports = relocate_frames(camera, live.map, std::move(reports), options);
   refined.live = std::move(live);
+  if (progress) {
+    progress({"refining", static_cast<std::int64_t>(steps.size()), static_cast<std::int64_t>(steps.size()), ""});
+  }
   return refined;
 }
 

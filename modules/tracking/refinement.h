@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct RefinementSummary {
   int sightings = 0;
   int sightings_added = 0;
   int sightings_removed = 0;
+  int sightings_aligned = 0;  ///< by their texture
   int iterations = 0;
   double seconds = 0;
   double focal_factor = 1.0;  ///< the factor on the focal length that would fit best
@@ -35,10 +37,12 @@ struct RefinedTrack {
 };
 
 /// Bundle adjustment of all keyframes and points after a recording has been tracked: sightings that were missed are
-/// added, outlying ones removed, covariances filled in; then every other frame's pose is estimated again in the refined
-/// map from the sightings that its report holds. `anchored` keyframes stay fixed.
+/// added, outlying ones removed, all aligned by their texture, covariances filled in; then every other frame's pose is
+/// estimated again in the refined map from the sightings that its report holds. `anchored` keyframes stay fixed. A
+/// requested stop ends it after the step at hand, with what has been gained so far.
 RefinedTrack refine_globally(const Camera& camera, LiveMap live, std::vector<FrameReport> reports,
-                             const CameraTrackerOptions& options, int anchored);
+                             const CameraTrackerOptions& options, int anchored, const ProgressSink& progress = {},
+                             const std::stop_token& stop = {});
 
 /// Estimates the poses of the frames that are no keyframes again, in order, in a map that has changed.
 std::vector<FrameReport> relocate_frames(const Camera& camera, const PointMap& map, std::vector<FrameReport> reports,

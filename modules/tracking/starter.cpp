@@ -117,8 +117,10 @@ StartedMap MapStarter::build(const ImageFrame& frame, Features features, const s
   LiveMap& live = started.live;
   NewKeyframe a{{reference_->index, reference_->time, reference_->name, T_world_a, Matrix6d::Zero(), {}},
                 reference_features_,
-                {}};
-  NewKeyframe b{{frame.index, frame.time, frame.name, T_world_b, Matrix6d::Zero(), {}}, std::move(features), {}};
+                {},
+                reference_->grey};
+  NewKeyframe b{
+      {frame.index, frame.time, frame.name, T_world_b, Matrix6d::Zero(), {}}, std::move(features), {}, frame.grey};
   live = with_keyframe(with_keyframe({}, std::move(a), options_.sigma_px), std::move(b), options_.sigma_px);
   std::vector<Match> agreed;
   for (int i : geometry.inliers) agreed.push_back(matches[static_cast<std::size_t>(i)]);
