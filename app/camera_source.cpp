@@ -13,7 +13,12 @@ namespace {
 
 Camera camera_for(const CameraSource& source, const std::filesystem::path& camera_file, const std::string& name,
                   ImageSize size) {
-  if (!camera_file.empty()) return read_camera(camera_file, size);
+  if (!camera_file.empty()) {
+    Camera camera = read_camera(camera_file, size);
+    const bool dataset_knows = source.dataset && source.dataset->camera;
+    if (camera.readout_s == 0 && dataset_knows) camera.readout_s = source.dataset->camera->readout_s;
+    return camera;
+  }
   if (source.dataset && source.dataset->camera) return *source.dataset->camera;
   throw InputError(name, 0, "the camera that took these images is not known",
                    "give its file with --camera, or make one with 'alidade calibrate camera'");

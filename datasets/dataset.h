@@ -21,6 +21,7 @@ struct DatasetFrame {
   std::filesystem::path image;
   std::optional<std::filesystem::path> depth;       ///< registered to the image; unit: Dataset::depth_unit_m
   std::optional<Eigen::Isometry3d> T_world_camera;  ///< the true pose at `time`, where the data has one
+  Timestamp depth_time{};                           ///< of the depth image
 };
 
 /// A folder of a public data set, read whole but for the pixels.

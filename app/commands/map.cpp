@@ -12,6 +12,8 @@
 namespace alidade {
 namespace {
 
+constexpr std::chrono::milliseconds kLongestGap{100};  // between poses that are interpolated
+
 class MapCommand : public Command {
  public:
   explicit MapCommand(CLI::App& flags) {
@@ -73,17 +75,20 @@ class MapCommand : public Command {
   // A frame with its pose; where the data has depth, only frames that have one.
   std::optional<PosedImage> posed_image(const CameraSource& source, const ImageFrame& frame,
                                         const Trajectory& poses) const {
-    const auto T = pose_at(poses, frame.time, std::chrono::milliseconds(100));
+    const auto T = pose_at(poses, frame.time, kLongestGap);
     if (!T) return std::nullopt;
-    PosedImage image{frame, *T, {}, 1.0};
+    PosedImage image{frame, *T, Vector6d::Zero(), {}, 1.0};
+    image.twist =
+        twist_at(poses, frame.time, std::chrono::milliseconds(15), kLongestGap).value_or(Vector6d(Vector6d::Zero()));
     if (!source.dataset) return image;
     const auto& frames = source.dataset->frames;
     const bool any_depth =
         std::any_of(frames.begin(), frames.end(), [](const DatasetFrame& f) { return f.depth.has_value(); });
     if (!any_depth) return image;
-    const auto& depth = frames[static_cast<std::size_t>(frame.index)].depth;
-    if (!depth) return std::nullopt;
-    image.depth = read_depth(*depth);
+    const DatasetFrame& listed = frames[static_cast<std::size_t>(frame.index)];
+    if (!listed.depth) return std::nullopt;
+    image.depth = read_depth(*listed.depth);
+    image.depth_delay_s = to_seconds(listed.depth_time - listed.time);
     image.depth_unit_m = source.dataset->depth_unit_m;
     return image;
   }

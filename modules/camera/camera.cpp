@@ -55,6 +55,7 @@ std::optional<std::string> find_fault(const Camera& camera) {
   if (!(c.cy > -0.5 && c.cy < c.height)) {
     return fmt::format("cy must lie in the image (0..{} px), got {}", c.height, c.cy);
   }
+  if (!(c.readout_s >= 0 && c.readout_s < 1)) return fmt::format("readout_s must lie in [0, 1) s, got {}", c.readout_s);
   const auto& k = c.distortion;
   for (double value : {k.k1, k.k2, k.p1, k.p2, k.k3}) {
     if (!std::isfinite(value)) return fmt::format("distortion must be finite, got {}", value);

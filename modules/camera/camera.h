@@ -21,6 +21,7 @@ struct Camera {
   double fx = 0, fy = 0;      ///< px
   double cx = 0, cy = 0;      ///< px
   BrownConrady distortion;
+  double readout_s = 0;  ///< from the first row's exposure to the last one's; 0: all rows are exposed at once
   bool operator==(const Camera&) const = default;
 };
 

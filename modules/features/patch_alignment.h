@@ -10,14 +10,14 @@ namespace alidade {
 
 struct PatchAlignmentOptions {
   int side_px = 15;                ///< of the reference patch
-  double least_correlation = 0.9; ///< of the two patches once aligned; a patch on an edge in depth does not get there
-  double most_shift_px = 2.0;     ///< from the pixel that the search starts from
+  double least_correlation = 0.9;  ///< of the two patches once aligned; a patch on an edge in depth does not get there
+  double most_shift_px = 2.0;      ///< from the pixel that the search starts from
   int most_iterations = 30;
 };
 
 struct AlignedPatch {
-  Eigen::Vector2d pixel;  ///< of the reference pixel's likeness, px
-  double correlation = 0; ///< enhanced correlation coefficient, at most 1
+  Eigen::Vector2d pixel;   ///< of the reference pixel's likeness, px
+  double correlation = 0;  ///< enhanced correlation coefficient, at most 1
 };
 
 /// Where in `image` the texture about `reference_pixel` of `reference` (both 8-bit grey) is seen, starting from `pixel`

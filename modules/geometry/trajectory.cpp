@@ -26,4 +26,14 @@ std::optional<Eigen::Isometry3d> pose_at(const Trajectory& trajectory, Timestamp
   return interpolate(before->T_world_camera, after->T_world_camera, fraction);
 }
 
+std::optional<Vector6d> twist_at(const Trajectory& trajectory, Timestamp time, RecordingClock::duration half_span,
+                                 RecordingClock::duration longest_gap) {
+  const auto before = pose_at(trajectory, time - half_span, longest_gap);
+  const auto after = pose_at(trajectory, time + half_span, longest_gap);
+  if (!before || !after) return std::nullopt;
+  Vector6d twist = difference(*before, *after);
+  twist.head<3>() = interpolate(*before, *after, 0.5).linear().transpose() * before->linear() * twist.head<3>();
+  return twist / (2.0 * to_seconds(half_span));
+}
+
 }  // namespace alidade

@@ -29,4 +29,9 @@ double path_length(const Trajectory& trajectory);
 std::optional<Eigen::Isometry3d> pose_at(const Trajectory& trajectory, Timestamp time,
                                          RecordingClock::duration longest_gap);
 
+/// How the camera moves at `time`: the difference of its poses `half_span` before and after, per second (m/s and rad/s,
+/// along its own axes). Empty where pose_at is at one of them.
+std::optional<Vector6d> twist_at(const Trajectory& trajectory, Timestamp time, RecordingClock::duration half_span,
+                                 RecordingClock::duration longest_gap);
+
 }  // namespace alidade

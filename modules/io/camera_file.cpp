@@ -150,6 +150,7 @@ void write_camera(const std::filesystem::path& path, const Camera& c, const std:
   if (k != BrownConrady{}) {
     text += fmt::format("  distortion: {{k1: {}, k2: {}, p1: {}, p2: {}, k3: {}}}\n", k.k1, k.k2, k.p1, k.p2, k.k3);
   }
+  if (c.readout_s != 0) text += fmt::format("  readout_s: {}\n", c.readout_s);
   write_file(path, text);
 }
 

@@ -32,6 +32,7 @@ struct NamedCamera {
 ///     resolution_px: [640, 480]
 ///     intrinsics_px: {fx: 500, fy: 500, cx: 319.5, cy: 239.5}
 ///     distortion: {k1: 0, k2: 0, p1: 0, p2: 0, k3: 0}
+///     readout_s: 0.02           # of a rolling shutter, first row to last; may be left out
 ///
 /// COLMAP's pixel (0.5, 0.5), the centre of the top-left pixel, becomes our (0, 0).
 /// Throws InputError, with the line where there is one, for a file that is none of these or is damaged, a key that is

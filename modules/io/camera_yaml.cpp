@@ -89,7 +89,8 @@ void read_resolution(const Path& path, const YAML::Node& node, CameraRecord& rec
 
 CameraRecord read_camera_node(const Path& path, const YAML::Node& node, std::size_t index) {
   require_map(path, node, "camera: {model: pinhole, resolution_px: [640, 480], intrinsics_px: {fx: 500, ...}}");
-  constexpr std::array<std::string_view, 5> kKeys{"name", "model", "resolution_px", "intrinsics_px", "distortion"};
+  constexpr std::array<std::string_view, 6> kKeys{"name",          "model",      "resolution_px",
+                                                  "intrinsics_px", "distortion", "readout_s"};
   refuse_unknown_keys(path, node, kKeys);
   CameraRecord record;
   record.line = line_of(node);
@@ -108,6 +109,10 @@ CameraRecord read_camera_node(const Path& path, const YAML::Node& node, std::siz
       throw InputError(path, line_of(distortion), "model pinhole has no distortion", "write model: brown_conrady");
     }
     read_distortion(path, distortion, record);
+  }
+  if (const YAML::Node readout = node["readout_s"]) {
+    record.camera.readout_s = number(path, readout);
+    record.lines["readout_s"] = line_of(readout);
   }
   return record;
 }

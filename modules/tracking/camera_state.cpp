@@ -6,6 +6,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "camera/rolling_shutter.h"
 #include "geometry/rotation.h"
 
 namespace alidade {
@@ -78,6 +79,22 @@ CameraState resting_state(Timestamp time, const Eigen::Isometry3d& T_world_camer
   state.covariance.block<3, 3>(6, 6) = v_sigma * v_sigma * Eigen::Matrix3d::Identity();
   state.covariance.block<3, 3>(9, 9) = omega_sigma * omega_sigma * Eigen::Matrix3d::Identity();
   return state;
+}
+
+Vector6d twist_of(const CameraState& state) {
+  Vector6d twist;
+  twist << state.T_world_camera.linear().transpose() * state.v_world, state.omega_camera;
+  return twist;
+}
+
+std::vector<PointObservation> without_rolling_shutter(const Camera& camera, const CameraState& state,
+                                                      std::vector<PointObservation> observations) {
+  const Eigen::Isometry3d T_camera_world = state.T_world_camera.inverse();
+  for (PointObservation& o : observations) {
+    const double depth_m = (T_camera_world * o.p_world).z();
+    if (depth_m > 0) o.pixel = at_middle_row(camera, o.pixel, twist_of(state), depth_m);
+  }
+  return observations;
 }
 
 }  // namespace alidade

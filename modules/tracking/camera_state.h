@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 
 #include "core/time.h"
@@ -44,5 +46,12 @@ MotionNoise adapt(const MotionNoise& noise, const CameraState& before, const Cam
 /// A state at rest at a pose, with velocities unknown by the given standard deviations (m/s, rad/s).
 CameraState resting_state(Timestamp time, const Eigen::Isometry3d& T_world_camera, const Matrix6d& pose_covariance,
                           double v_sigma, double omega_sigma);
+
+/// How the camera of a state moves: m/s and rad/s along its own axes.
+Vector6d twist_of(const CameraState& state);
+
+/// The observations as a camera that moves like `state` would have made them had all its rows been exposed at once.
+std::vector<PointObservation> without_rolling_shutter(const Camera& camera, const CameraState& state,
+                                                      std::vector<PointObservation> observations);
 
 }  // namespace alidade

@@ -272,7 +272,14 @@ std::optional<PoseUpdate> CameraTracker::estimate(const CameraState& predicted, 
   const auto observations = as_observations(live_.map, found, sigma_px_);
   PoseUpdateOptions update = options_.update;
   update.map_covariance = options_.pose != PoseMethod::EkfPaper && update.map_covariance;
-  return estimate_pose(options_.pose, camera_, predicted, observations, update, use_prior);
+  const auto estimate_with = [&](const CameraState& moving) {
+    return estimate_pose(options_.pose, camera_, predicted, without_rolling_shutter(camera_, moving, observations),
+                         update, use_prior);
+  };
+  const bool rolls = camera_.readout_s > 0 && localises_only_ && use_prior;
+  if (!rolls) return estimate_pose(options_.pose, camera_, predicted, observations, update, use_prior);
+  const auto first = estimate_with(predicted);  // the velocity is a guess yet; the pose that it gives tells it better
+  return first ? estimate_with(absorb(predicted, first->T_world_camera, first->covariance)) : first;
 }
 
 double CameraTracker::median_range(const Eigen::Isometry3d& T_world_camera,

@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
 #include <Eigen/LU>
 
+#include "camera/rolling_shutter.h"
 #include "reconstruction/epipolar_matching.h"
 
 namespace alidade {
@@ -64,14 +66,36 @@ std::optional<MapPoint> fuse(const MapPoint& known, const MapPoint& seen) {
   return fused;
 }
 
-LiveMap with_depth(const Camera& camera, LiveMap live, const PosedImage& image, const PosedMapOptions& options) {
+using Depths = std::vector<std::optional<double>>;  // per feature, m
+
+// Where a pixel of the image is in the depth image, which was taken a little later: the camera's turning alone.
+std::optional<Eigen::Vector2d> pixel_in_depth(const Camera& camera, const PosedImage& image,
+                                              const Eigen::Vector2d& pixel) {
+  if (image.depth_delay_s == 0.0) return pixel;
+  const auto d = unproject(camera, pixel);
+  if (!d) return std::nullopt;
+  const auto later = project(camera, perturbation(image.depth_delay_s * image.twist).linear().transpose() * *d);
+  return later ? std::optional(later->pixel) : std::nullopt;
+}
+
+// The features as all rows exposed at once would show them.
+Features without_rolling_shutter(const Camera& camera, Features features, const Vector6d& twist, const Depths& depths) {
+  for (std::size_t f = 0; f < depths.size(); ++f) {
+    features.pixels[f] =
+        at_middle_row(camera, features.pixels[f], twist, depths[f].value_or(std::numeric_limits<double>::infinity()));
+  }
+  return features;
+}
+
+LiveMap with_depth(const Camera& camera, LiveMap live, const PosedImage& image, const Depths& depths,
+                   const PosedMapOptions& options) {
   const std::size_t last = live.map.keyframes.size() - 1;
   KeyframeFeatures& frame = live.features[last];
   const cv::Mat& colours = image.frame.colour.empty() ? image.frame.grey : image.frame.colour;
   for (int f = 0; f < frame.features.size(); ++f) {
     const Eigen::Vector2d& pixel = frame.features.pixels[static_cast<std::size_t>(f)];
     const auto d_camera = unproject(camera, pixel);
-    const auto z = depth_at(image, pixel, options);
+    const auto z = depths[static_cast<std::size_t>(f)];
     if (!d_camera || !z) continue;
     MapPoint seen = lift(camera, image, *d_camera, *z, options);
     int& point = frame.point_of_feature[static_cast<std::size_t>(f)];
@@ -132,6 +156,12 @@ LiveMap with_points_of_recent_images(const Camera& camera, LiveMap live, const c
 LiveMap with_posed_image(const Camera& camera, LiveMap live, const PosedImage& image, const PosedMapOptions& options) {
   NewKeyframe added;
   added.features = detect_sift(image.frame.grey, options.sift);
+  Depths depths;
+  for (const Eigen::Vector2d& pixel : added.features.pixels) {
+    const auto in_depth = pixel_in_depth(camera, image, pixel);
+    depths.push_back(in_depth ? depth_at(image, *in_depth, options) : std::nullopt);
+  }
+  added.features = without_rolling_shutter(camera, std::move(added.features), image.twist, depths);
   Vector6d sigmas;
   sigmas << Eigen::Vector3d::Constant(options.pose_sigma_m), Eigen::Vector3d::Constant(options.pose_sigma_rad);
   const Matrix6d covariance = sigmas.cwiseAbs2().asDiagonal();
@@ -143,7 +173,7 @@ LiveMap with_posed_image(const Camera& camera, LiveMap live, const PosedImage& i
                               std::vector<bool>(static_cast<std::size_t>(added.features.size()), false), search);
   added.keyframe = {image.frame.index, image.frame.time, image.frame.name, image.T_world_camera, covariance, {}};
   live = with_keyframe(std::move(live), std::move(added), options.growth.sigma_px);
-  if (!image.depth.empty()) return with_depth(camera, std::move(live), image, options);
+  if (!image.depth.empty()) return with_depth(camera, std::move(live), image, depths, options);
   live = with_retriangulated_points(camera, std::move(live));
   const cv::Mat& colours = image.frame.colour.empty() ? image.frame.grey : image.frame.colour;
   constexpr std::size_t kEnough = 16;  // shared points from which map growth takes a keyframe for a neighbour

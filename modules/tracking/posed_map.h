@@ -14,8 +14,10 @@ namespace alidade {
 struct PosedImage {
   ImageFrame frame;
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  cv::Mat depth;              ///< 16-bit, along the optical axis, 0 where unknown; may be empty
-  double depth_unit_m = 1.0;  ///< metres per step of `depth`
+  Vector6d twist = Vector6d::Zero();  ///< how the camera moves, m/s and rad/s along its axes: for a rolling shutter
+  cv::Mat depth;                      ///< 16-bit, along the optical axis, 0 where unknown; may be empty
+  double depth_unit_m = 1.0;          ///< metres per step of `depth`
+  double depth_delay_s = 0.0;         ///< when it was taken, after the image
 };
 
 struct PosedMapOptions {

@@ -24,6 +24,33 @@ std::vector<int> all_keyframes(const PointMap& map) {
   return all;
 }
 
+struct FocalFit {
+  double factor = 1.0;
+  double sigma = 0.0;
+};
+
+// The factor on the focal length that fits the map best. Far from it, the map's shape has to follow, and sightings that
+// looked like outliers no longer do: several adjustments, each from where the last one ended.
+FocalFit fit_focal_length(Camera camera, LiveMap live, BundleOptions bundle) {
+  constexpr int kMostRounds = 8;
+  constexpr double kSettled = 2e-3;
+  bundle.refine_focal = true;
+  FocalFit fit;
+  for (int round = 0; round < kMostRounds; ++round) {
+    bundle.loss_sigmas = kLossSigmas * reprojection_sigma(camera, live.map);
+    BundleResult result = adjust_bundle(camera, std::move(live.map), bundle);
+    camera.fx *= result.focal_factor;
+    camera.fy *= result.focal_factor;
+    fit.factor *= result.focal_factor;
+    if (round == 0) fit.sigma = result.focal_factor_sigma;
+    if (std::abs(result.focal_factor - 1.0) < kSettled) break;
+    live.map = remove_outlying_sightings(camera, std::move(result.map), kCutSigmas).map;
+    release_removed_sightings(live);
+    live = complete_sightings(camera, std::move(live), living_points(live.map), all_keyframes(live.map), 5.0).live;
+  }
+  return fit;
+}
+
 }  // namespace
 
 std::optional<std::string> doubt_focal_length(const Camera& camera, const RefinementSummary& summary) {
@@ -69,10 +96,9 @@ RefinedTrack refine_globally(const Camera& camera, LiveMap live, std::vector<Fra
     release_removed_sightings(live);
   };
   const auto check_focal_length = [&] {
-    bundle.refine_focal = true;
-    const BundleResult focal = adjust_bundle(camera, live.map, bundle);
-    summary.focal_factor = focal.focal_factor;
-    summary.focal_factor_sigma = focal.focal_factor_sigma;
+    const FocalFit fit = fit_focal_length(camera, live, bundle);
+    summary.focal_factor = fit.factor;
+    summary.focal_factor_sigma = fit.sigma;
   };
   const std::vector<std::function<void()>> steps{
       [&] { complete(5.0); }, adjust, cut, [&] { complete(3.0); }, adjust, cut, align, adjust, cut, adjust, cut, adjust,
@@ -81,7 +107,6 @@ RefinedTrack refine_globally(const Camera& camera, LiveMap live, std::vector<Fra
     if (progress) progress({"refining", static_cast<std::int64_t>(i), static_cast<std::int64_t>(steps.size()), ""});
     steps[i]();
   }
-  bundle.refine_focal = false;
   live.map = with_covariances(camera, std::move(live.map), bundle);
   summary.rms_px_after = reprojection_rms_px(camera, live.map);
   refined.reports = relocate_frames(camera, live.map, std::move(reports), options);

@@ -39,7 +39,7 @@ void expect_found(const std::vector<MarkerSighting>& found, int id, const Drawin
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].id, id);
   for (std::size_t c = 0; c < 4; ++c) {
-    EXPECT_LT((found[0].corners[c] - drawing.corners[c]).norm(), 0.3)
+    EXPECT_LT((found[0].corners[c] - drawing.corners[c]).norm(), 0.15)
         << "corner " << c << ": " << found[0].corners[c].transpose();
   }
 }

@@ -26,6 +26,24 @@ TEST(PathLength, IsTheSumOfTheSteps) {
   EXPECT_EQ(path_length({kPath[0]}), 0.0);
 }
 
+TEST(TwistAt, IsTheVelocityOfASteadyMotionAlongTheCamerasAxes) {
+  Vector6d twist;
+  twist << 0.4, -0.2, 0.1, 0.3, 1.1, -0.7;
+  const auto longest_gap = std::chrono::seconds(1);
+  Trajectory trajectory;
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  for (int i = 0; i < 40; ++i) {  // small steps: perturbation() is no screw
+    trajectory.push_back({Timestamp(std::chrono::milliseconds(i)), T, {}});
+    T = T * perturbation(0.001 * twist);
+  }
+  const auto found =
+      twist_at(trajectory, Timestamp(std::chrono::milliseconds(20)), std::chrono::milliseconds(5), longest_gap);
+  ASSERT_TRUE(found);
+  EXPECT_LT((*found - twist).norm(), 1e-3);
+  EXPECT_FALSE(
+      twist_at(trajectory, Timestamp(std::chrono::milliseconds(2)), std::chrono::milliseconds(5), longest_gap));
+}
+
 TEST(PoseAt, IsTheStoredPoseAtItsTime) {
   for (const StampedPose& pose : kPath) {
     const auto found = pose_at(kPath, pose.time, 0ns);

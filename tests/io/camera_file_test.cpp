@@ -27,7 +27,9 @@ class CameraFile : public testing::Test {
 TEST_F(CameraFile, GivesBackExactlyWhatWasWritten) {
   const Camera plain{640, 480, 500.1, 501.2, 1.0 / 3.0, 239.5, {}};
   const Camera bent{1536, 1024, 1379.74, 1382.08, 760.095, 503.155, {0.1 + 0.2, -0.9531, -0.0054, 1e-17, 1.1633}};
-  for (const Camera& camera : {plain, bent}) {
+  Camera rolling = bent;
+  rolling.readout_s = 0.0173;
+  for (const Camera& camera : {plain, bent, rolling}) {
     write_camera(folder_ / "c.yaml", camera, "left \\ \"front\"");
     EXPECT_EQ(read_camera(folder_ / "c.yaml"), camera);
     EXPECT_EQ(read_cameras(folder_ / "c.yaml").front().name, "left \\ \"front\"");
@@ -54,6 +56,9 @@ TEST_F(CameraFile, NamesWhatIsWrongInOurYaml) {
   EXPECT_EQ(message("c.yaml", camera(size)), "c.yaml:2: the camera has no 'intrinsics_px'");
   EXPECT_EQ(message("c.yaml", camera(size + "  intrinsics_px:\n    fx: -3.1\n    fy: 500\n    cx: 320\n    cy: 240\n")),
             "c.yaml:5: camera 'camera 0': fx must be > 0 px, got -3.1; correct the file or calibrate the camera again");
+  EXPECT_EQ(message("c.yaml", camera(size + k + "  readout_s: 17\n")),
+            "c.yaml:5: camera 'camera 0': readout_s must lie in [0, 1) s, got 17; correct the file or calibrate the "
+            "camera again");
   EXPECT_EQ(message("c.yaml", camera(size + "  intrinsics_px: {fx: 500, fy: wide, cx: 320, cy: 240}\n")),
             "c.yaml:4: 'wide' is not a number");
   EXPECT_EQ(message("c.yaml", camera(size + "  intrinsics_px: {fx: .nan, fy: 500, cx: 320, cy: 240}\n")),
