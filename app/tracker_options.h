@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/options_yaml.h"
-#include "tracking/camera_tracker.h"
+#include "tracking/camera_tracker_options.h"
 
 namespace alidade {
 

@@ -12,6 +12,7 @@
 #include "app/world_scale.h"
 #include "io/map_file.h"
 #include "io/trajectory_file.h"
+#include "tracking/camera_tracker.h"
 
 namespace alidade {
 namespace {

@@ -5,54 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "camera/camera.h"
-#include "features/flow.h"
-#include "tracking/camera_state.h"
+#include "tracking/camera_tracker_options.h"
 #include "tracking/frame.h"
 #include "tracking/live_map.h"
-#include "tracking/map_growth.h"
-#include "tracking/map_search.h"
-#include "tracking/pose_method.h"
+#include "tracking/localiser.h"
 #include "tracking/starter.h"
 
 namespace alidade {
-
-/// How a frame's map points are found again.
-enum class FeatureMode {
-  Auto,  ///< optical flow between keyframes; SIFT where flow loses its hold (stills, jumps) and on keyframes
-  Sift,  ///< SIFT in every frame, matched with the map by descriptor alone: slow, to compare with
-};
-
-struct CameraTrackerOptions {
-  PoseMethod pose = PoseMethod::Ekf;
-  FeatureMode features = FeatureMode::Auto;
-  bool local_refinement = true;  ///< bundle adjustment of the last keyframes at every new one
-  SiftOptions sift;
-  FlowOptions flow;
-  StarterOptions start;
-  PoseUpdateOptions update;
-  GrowthOptions growth;
-  double sigma_px = 1.0;  ///< of a feature, until the residuals have told better
-  int most_tracks = 600;  ///< points followed by flow; more add time, hardly accuracy
-  double weak_share =
-      0.3;  ///< of the last keyframe's points; a search with fewer inliers is compared with a match anywhere
-  double least_flow_share = 0.3;       ///< of the points followed; below it flow has lost its hold and SIFT is asked
-  int least_inliers = 20;              ///< a pose from fewer points is not believed
-  double least_inlier_share = 0.35;    ///< of the points found; a pose that most of them contradict is not believed
-  double keyframe_share = 0.6;         ///< a keyframe is due when fewer of the last one's points are still followed
-  double keyframe_parallax_deg = 3.0;  ///< or when the median ray to them has turned by more
-  int anchor_every = 1;                ///< in a known map: frames after which flow is corrected by features
-  int most_predicted = 5;              ///< frames without measurement after which the camera counts as lost
-  int window = 8;                      ///< keyframes that local refinement moves
-  int most_fixed = 12;                 ///< and those that hold them
-  double relocalisation_ratio = 0.8;   ///< of descriptor distances
-};
-
-/// Features per keyframe for images of this size: one per 100 px², 1000 to 6000.
-int suggested_feature_count(const Camera& camera);
-
-/// Throws std::invalid_argument naming the field, its value and the bound.
-void validate(const CameraTrackerOptions& options);
 
 /// Follows one camera through images taken in order: waits until two of them make a map, then for each predicts, finds
 /// map points near where they are expected, updates the state, and at keyframes lets the map grow.
@@ -77,39 +36,18 @@ class CameraTracker {
   const MotionNoise& motion_noise() const { return noise_; }
 
  private:
-  // What one way of looking has brought.
-  struct Attempt {
-    std::vector<FoundPoint> found;
-    std::optional<PoseUpdate> update;
-    std::optional<Features> features;  // where SIFT was run
-    bool used_prior = true;
-  };
-
   FrameReport wait(const ImageFrame& frame, const FlowImage& flow);
   FrameReport track(const ImageFrame& frame, const FlowImage& flow);
   void adopt(StartedMap started, const ImageFrame& frame);
 
-  Attempt follow(const CameraState& predicted, const FlowImage& flow) const;
-  Attempt search(const CameraState& predicted, const ImageFrame& frame) const;
-  Attempt relocalise(const CameraState& predicted, const ImageFrame& frame, std::optional<Features> features) const;
-  std::vector<int> recent_points() const;
-  Attempt widen(const CameraState& predicted, Attempt first) const;
-  Attempt match_every_descriptor(const CameraState& predicted, const ImageFrame& frame) const;
-  std::optional<PoseUpdate> estimate(const CameraState& predicted, const std::vector<FoundPoint>& found,
-                                     bool use_prior) const;
+  Localiser localiser() const;
   double median_range(const Eigen::Isometry3d& T_world_camera, const std::vector<FoundPoint>& found) const;
-  bool is_believable(const Attempt& attempt) const;
-  bool is_weak(const Attempt& attempt) const;
 
-  FrameReport accept(const ImageFrame& frame, const CameraState& predicted, Attempt attempt);
+  FrameReport accept(const ImageFrame& frame, const CameraState& predicted, Localisation attempt);
   std::vector<FrameExpectation> expectations(const CameraState& predicted, const std::vector<FoundPoint>& found) const;
   FrameReport lose(const ImageFrame& frame, const CameraState& predicted);
-  bool keyframe_is_due(const Attempt& attempt) const;
-  void anchor_in_features(const ImageFrame& frame, const CameraState& predicted, Attempt& attempt) const;
-  void add_keyframe(const ImageFrame& frame, Attempt& attempt);
-  std::vector<FoundPoint> snapped_to_features(const std::vector<FoundPoint>& found, const Features& features,
-                                              bool drop_others) const;
-  void refine_locally();
+  bool keyframe_is_due(const Localisation& attempt) const;
+  void add_keyframe(const ImageFrame& frame, Localisation& attempt);
   void retrack_from_last_keyframe();
   void learn_noise(const PoseUpdate& update);
 

@@ -61,6 +61,33 @@ std::optional<std::string> doubt_focal_length(const Camera& camera, const Refine
       camera.fx, camera.fx * summary.focal_factor);
 }
 
+LiveMap refine_locally(const Camera& camera, LiveMap live, int anchored, int window, int most_fixed) {
+  const int last = static_cast<int>(live.map.keyframes.size()) - 1;
+  BundleOptions bundle;
+  bundle.max_iterations = 8;
+  for (int k = std::max(anchored, last - window + 1); k <= last; ++k) {
+    bundle.free_keyframes.push_back(k);
+  }
+  // The keyframes that hold them: those that share most points with the newest, and always the oldest anchors.
+  const int first_free = bundle.free_keyframes.front();
+  const std::vector<int> shared = shared_points(live.map, last);
+  std::vector<std::pair<int, int>> ranked;
+  for (int k = 0; k < first_free; ++k) {
+    if (shared[static_cast<std::size_t>(k)] > 10 || k >= first_free - 2) {
+      ranked.emplace_back(-shared[static_cast<std::size_t>(k)], k);
+    }
+  }
+  std::sort(ranked.begin(), ranked.end());
+  for (std::size_t i = 0; i < ranked.size() && static_cast<int>(i) < most_fixed; ++i) {
+    bundle.fixed_keyframes.push_back(ranked[i].second);
+  }
+  live.map = adjust_bundle(camera, std::move(live.map), bundle).map;
+  live.map = remove_outlying_sightings(camera, std::move(live.map), 4.0).map;
+  release_removed_sightings(live);
+  live.map = with_covariances(camera, std::move(live.map), bundle);
+  return live;
+}
+
 RefinedTrack refine_globally(const Camera& camera, LiveMap live, std::vector<FrameReport> reports,
                              const CameraTrackerOptions& options, int anchored, const ProgressSink& progress,
                              const std::stop_token& stop) {

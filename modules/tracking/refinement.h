@@ -8,9 +8,16 @@
 
 #include "camera/camera.h"
 #include "core/progress.h"
-#include "tracking/camera_tracker.h"
+#include "tracking/camera_tracker_options.h"
+#include "tracking/frame.h"
+#include "tracking/live_map.h"
 
 namespace alidade {
+
+/// Bundle adjustment of the last `window` keyframes, those before them that share most points with the newest (at most
+/// `most_fixed`) holding them; outlying sightings are removed, covariances filled in. The first `anchored` keyframes
+/// never move.
+LiveMap refine_locally(const Camera& camera, LiveMap live, int anchored, int window, int most_fixed);
 
 /// What global refinement has done, for the report.
 struct RefinementSummary {

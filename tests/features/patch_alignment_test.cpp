@@ -59,8 +59,8 @@ TEST(AlignPatch, FindsTheLikenessToAFewHundredthsOfAPixel) {
 TEST(AlignPatch, StartsFromTheGivenMapWhereTheTiltIsStrong) {
   Eigen::Matrix2d A;
   A << 0.1, -1.3, 1.2, 0.2;  // turned by about a right angle
-  const auto aligned = align_patch(reference_image(), kReference, image_of(A, 1, 0), kLikeness + Eigen::Vector2d(0.5, 0.5),
-                                   1.05 * A);
+  const auto aligned =
+      align_patch(reference_image(), kReference, image_of(A, 1, 0), kLikeness + Eigen::Vector2d(0.5, 0.5), 1.05 * A);
   ASSERT_TRUE(aligned);
   EXPECT_LT((aligned->pixel - kLikeness).norm(), 0.1);
 }
