@@ -15,6 +15,7 @@ Camera camera_for(const CameraSource& source, const std::filesystem::path& camer
                   ImageSize size) {
   if (!camera_file.empty()) {
     Camera camera = read_camera(camera_file, size);
+    // Most camera files cannot say how long the shutter reads out; the data set may know its sensor.
     const bool dataset_knows = source.dataset && source.dataset->camera;
     if (camera.readout_s == 0 && dataset_knows) camera.readout_s = source.dataset->camera->readout_s;
     return camera;

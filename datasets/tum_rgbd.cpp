@@ -88,7 +88,9 @@ std::optional<Dataset> open_tum_rgbd(const fs::path& folder) {
   if (fs::exists(folder / "depth.txt")) assign_depth(read_file_list(folder / "depth.txt"), dataset.frames);
   dataset.camera = find_camera(folder, "camera.txt", dataset.frames.front().image);
   if (!dataset.camera) dataset.camera = published_camera(folder);
-  if (dataset.camera && is_of_the_kinect(folder)) dataset.camera->readout_s = kKinectReadoutS;
+  if (dataset.camera && dataset.camera->readout_s == 0 && is_of_the_kinect(folder)) {
+    dataset.camera->readout_s = kKinectReadoutS;
+  }
   return dataset;
 }
 

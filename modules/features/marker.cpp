@@ -35,8 +35,9 @@ std::vector<MarkerSighting> detect_markers(const cv::Mat& grey, MarkerFamily fam
   std::vector<MarkerSighting> sightings;
   for (std::size_t i = 0; i < ids.size(); ++i) {
     MarkerSighting sighting{ids[i], {}};
-    for (std::size_t c = 0; c < 4; ++c)
+    for (std::size_t c = 0; c < 4; ++c) {
       sighting.corners[c] = {corners[i][c].x - kAprilTagOffset, corners[i][c].y - kAprilTagOffset};
+    }
     sightings.push_back(sighting);
   }
   return sightings;

@@ -24,6 +24,12 @@ std::vector<int> all_keyframes(const PointMap& map) {
   return all;
 }
 
+Completion complete_everywhere(const Camera& camera, LiveMap live, double radius_px) {
+  const std::vector<int> points = living_points(live.map);
+  const std::vector<int> keyframes = all_keyframes(live.map);
+  return complete_sightings(camera, std::move(live), points, keyframes, radius_px);
+}
+
 struct FocalFit {
   double factor = 1.0;
   double sigma = 0.0;
@@ -46,7 +52,7 @@ FocalFit fit_focal_length(Camera camera, LiveMap live, BundleOptions bundle) {
     if (std::abs(result.focal_factor - 1.0) < kSettled) break;
     live.map = remove_outlying_sightings(camera, std::move(result.map), kCutSigmas).map;
     release_removed_sightings(live);
-    live = complete_sightings(camera, std::move(live), living_points(live.map), all_keyframes(live.map), 5.0).live;
+    live = complete_everywhere(camera, std::move(live), 5.0).live;
   }
   return fit;
 }
@@ -97,8 +103,7 @@ RefinedTrack refine_globally(const Camera& camera, LiveMap live, std::vector<Fra
   BundleOptions bundle = global_bundle_options(live.map, anchored);
   bundle.max_iterations = 25;
   const auto complete = [&](double radius_px) {
-    auto completion =
-        complete_sightings(camera, std::move(live), living_points(live.map), all_keyframes(live.map), radius_px);
+    Completion completion = complete_everywhere(camera, std::move(live), radius_px);
     live = std::move(completion.live);
     summary.sightings_added += completion.added;
   };
@@ -116,8 +121,8 @@ RefinedTrack refine_globally(const Camera& camera, LiveMap live, std::vector<Fra
     summary.sightings = result.sighting_count;
   };
   const auto cut = [&] {
-    SightingCut tidied =
-        remove_outlying_sightings(camera, std::move(live.map), kCutSigmas * reprojection_sigma(camera, live.map));
+    const double most_sigmas = kCutSigmas * reprojection_sigma(camera, live.map);
+    SightingCut tidied = remove_outlying_sightings(camera, std::move(live.map), most_sigmas);
     live.map = std::move(tidied.map);
     summary.sightings_removed += tidied.removed;
     release_removed_sightings(live);
