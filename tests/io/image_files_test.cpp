@@ -79,7 +79,8 @@ TEST_F(ImageFiles, ThatAreDamagedInTheMiddleAreNotReadAsGarbage) {
   write_image(folder_ / "a.jpg", noise(CV_8UC3));
   write_image(folder_ / "a.png", noise(CV_8UC3));
   std::string jpeg = read_bytes(folder_ / "a.jpg"), png = read_bytes(folder_ / "a.png");
-  jpeg.replace(jpeg.size() / 2, 2, "\xFF\xD3");  // a restart where code should be
+  jpeg.at(jpeg.size() / 2) = '\xFF';  // a restart where code should be
+  jpeg.at(jpeg.size() / 2 + 1) = '\xD3';
   png[png.size() / 2] ^= 1;
   folder_.write("b.jpg", jpeg);
   folder_.write("b.png", png);
