@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include <Eigen/Core>
 
 namespace alidade {
@@ -11,6 +13,9 @@ struct PointObservation {
   double sigma_px = 1.0;                                       ///< of each coordinate
   Eigen::Vector3d p_world = Eigen::Vector3d::Zero();           ///< m
   Eigen::Matrix3d covariance_world = Eigen::Matrix3d::Zero();  ///< of p_world, m²
+  /// Whence the point was triangulated (m): its error is then Gaussian in direction and inverse distance from there.
+  /// Empty: it is Gaussian in p_world.
+  std::optional<Eigen::Vector3d> seen_from;
 };
 
 }  // namespace alidade

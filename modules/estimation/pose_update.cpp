@@ -7,115 +7,136 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "estimation/exact_sightings.h"
+#include "estimation/pointwise_sightings.h"
 #include "geometry/rotation.h"
 
 namespace alidade {
 namespace {
 
-// One observation linearised about a pose: residual = pixel - h(pose), and its Jacobian with respect to xi.
-struct Linearised {
-  Eigen::Vector2d residual;
-  Eigen::Matrix<double, 2, 6> J;
-  Eigen::Matrix2d R_inverse;
+using Eigen::ArrayXd;
 
-  double chi2() const { return residual.dot(R_inverse * residual); }
-};
+// 1 where χ² is within the bound, otherwise 0.
+ArrayXd within(const ArrayXd& chi2, double bound) {
+  ArrayXd is_within(chi2.size());
+  std::transform(chi2.begin(), chi2.end(), is_within.begin(), [bound](double c) { return c <= bound ? 1.0 : 0.0; });
+  return is_within;
+}
 
+// Sightings: ExactSightings or PointwiseSightings.
+template <class Sightings>
 class PoseProblem {
  public:
-  PoseProblem(const Camera& camera, const PosePrior& prior, std::span<const PointObservation> observations,
+  PoseProblem(Sightings sightings, const PosePrior& prior, std::span<const PointObservation> observations,
               const PoseUpdateOptions& options)
-      : camera_(camera), prior_(prior), observations_(observations), options_(options) {}
+      : sightings_(std::move(sightings)), prior_(prior), observations_(observations), options_(options) {}
 
-  std::optional<Linearised> linearise(const Eigen::Isometry3d& T_world_camera, std::size_t i) const {
-    const PointObservation& o = observations_[i];
-    const Eigen::Vector3d p_camera = T_world_camera.inverse() * o.p_world;
-    const auto projection = project(camera_, p_camera);
-    if (!projection) return std::nullopt;
-    Linearised l;
-    l.residual = o.pixel - projection->pixel;
-    // p_camera' = exp(-θ)(p_camera - δ): minus identity and skew(p_camera).
-    l.J.leftCols<3>() = -projection->J_pixel_point;
-    l.J.rightCols<3>() = projection->J_pixel_point * skew(p_camera);
-    Eigen::Matrix2d R = o.sigma_px * o.sigma_px * Eigen::Matrix2d::Identity();
-    if (options_.map_covariance) {
-      const Eigen::Matrix<double, 2, 3> J_X = projection->J_pixel_point * T_world_camera.linear().transpose();
-      R += J_X * o.covariance_world * J_X.transpose();
-    }
-    l.R_inverse = R.inverse();
-    return l;
-  }
-
-  std::size_t size() const { return observations_.size(); }
-
-  // Which observations may belong to the prior's pose: the χ² gate with the innovation covariance J P Jᵀ + R.
-  std::vector<bool> gate_about_prior() const {
+  // Which observations may belong to the prior's pose (1, the others 0): the χ² gate with the innovation covariance
+  // J P Jᵀ + R.
+  ArrayXd gate_about_prior() {
+    linearise(prior_.T_world_camera);
+    const double wide = std::max(options_.gate_chi2, 16.0);  // the robust phase decides; the gate only trims
+    const ArrayXd& chi2 = sightings_.chi2();
+    ArrayXd passes = within(chi2, wide);  // then within J P Jᵀ + R all the more
     const Matrix6d P = prior_covariance();
-    std::vector<bool> passes(size(), false);
-    for (std::size_t i = 0; i < size(); ++i) {
-      const auto l = linearise(prior_.T_world_camera, i);
-      if (!l) continue;
-      const Eigen::Matrix2d S = l->J * P * l->J.transpose() + l->R_inverse.inverse();
-      const double wide = std::max(options_.gate_chi2, 16.0);  // the robust phase decides; the gate only trims
-      passes[i] = l->residual.dot(S.inverse() * l->residual) <= wide &&
-                  l->residual.norm() <= options_.loosest_gate_px + 4.0 * observations_[i].sigma_px;
+    for (Eigen::Index i = 0; i < chi2.size(); ++i) {
+      if (passes(i) > 0 || !std::isfinite(chi2(i))) continue;
+      const double reach_px = options_.loosest_gate_px + 4.0 * observations_[static_cast<std::size_t>(i)].sigma_px;
+      const Eigen::Matrix<double, 2, 7> rows = sightings_.in_px(i);
+      const Eigen::Vector2d residual = rows.col(6);
+      if (residual.norm() > reach_px) continue;
+      const Eigen::Matrix2d S = rows.leftCols<6>() * P * rows.leftCols<6>().transpose() + sightings_.noise(i);
+      if (residual.dot(S.inverse() * residual) <= wide) passes(i) = 1.0;
     }
     return passes;
   }
 
-  // Gauss–Newton on the active observations. `mu` is the scale of the Geman–McClure weight in units of the gate;
-  // infinite: plain least squares. Returns the pose; `information` is that of the last step.
-  Eigen::Isometry3d descend(Eigen::Isometry3d T, const std::vector<bool>& active, double mu, int steps,
-                            Matrix6d& information) const {
-    for (int step = 0; step < steps; ++step) {
-      const Vector6d from_prior = difference(prior_.T_world_camera, T);
-      const Matrix6d J_prior = prior_jacobian(T, from_prior);
-      const Matrix6d JtI = J_prior.transpose() * prior_.information;
-      Matrix6d A = JtI * J_prior;
-      Vector6d b = -JtI * from_prior;
-      for (std::size_t i = 0; i < size(); ++i) {
-        if (!active[i]) continue;
-        const auto l = linearise(T, i);
-        if (!l) continue;
-        const double ratio = l->chi2() / (mu * options_.gate_chi2);
-        const double weight = 1.0 / ((1.0 + ratio) * (1.0 + ratio));
-        const Eigen::Matrix<double, 6, 2> JtW = weight * l->J.transpose() * l->R_inverse;
-        A += JtW * l->J;
-        b += JtW * l->residual;
-      }
-      information = A;
-      const Vector6d xi = A.ldlt().solve(b);
-      if (!xi.allFinite()) break;
-      T = T * perturbation(xi);
-      T.linear() = exp_so3(log_so3(T.linear()));
-      if (xi.dot(A * xi) < 1e-10) break;  // below 1e-5 of a standard deviation
+  // Whether a weight as wide as `mu` gates would leave out the better part of what passed the gate at the prior's pose.
+  bool is_too_narrow(const ArrayXd& passes, double mu) const {
+    const double reached = (within(sightings_.chi2(), mu * options_.gate_chi2) * passes).sum();
+    return reached <= std::floor(passes.sum() / 3.0);
+  }
+
+  // Gauss–Newton with robust weights on the active observations and the prior. `mu` is the scale of the Geman–McClure
+  // weight in units of the gate.
+  Eigen::Isometry3d descend(Eigen::Isometry3d T, const ArrayXd& active, double mu) {
+    const double per_width = 1.0 / (mu * options_.gate_chi2);
+    for (int step = 0; step < std::max(1, options_.max_iterations / 3); ++step) {
+      linearise(T);
+      const ArrayXd weight = active / (1.0 + per_width * sightings_.chi2()).square();
+      const Step next = solve(T, sightings_.weighted_sum(weight));
+      if (!next.xi.allFinite()) break;
+      T = moved(T, next.xi);
+      if (next.sigmas < kRough) break;
     }
     return T;
   }
 
-  std::vector<bool> inliers_at(const Eigen::Isometry3d& T) const {
-    std::vector<bool> inlier(size(), false);
-    for (std::size_t i = 0; i < size(); ++i) {
-      const auto l = linearise(T, i);
-      inlier[i] = l && l->chi2() <= options_.gate_chi2;
+  // The same without weights, by what fits at the pose so far; each step decides anew what fits. `sightings` is what
+  // the last step rests on. Empty where too few fit or the pose is not determined.
+  std::optional<PoseUpdate> settle(Eigen::Isometry3d T) {
+    for (int round = 0;; ++round) {
+      linearise(T);
+      const ArrayXd fits = within(sightings_.chi2(), options_.gate_chi2);
+      if (fits.sum() < options_.least_inliers) return std::nullopt;
+      const NormalEquations equations = sightings_.weighted_sum(fits);
+      const Step next = solve(T, equations);
+      if (!next.xi.allFinite() || !next.factor.isPositive() || next.factor.rcond() < 1e-16) return std::nullopt;
+      if (round == options_.max_iterations || next.sigmas <= kFine) return outcome(T, fits, equations, next);
+      T = moved(T, next.xi);
     }
-    return inlier;
-  }
-
-  double chi2_per_dof(const Eigen::Isometry3d& T, const std::vector<bool>& active) const {
-    double sum = 0;
-    int count = 0;
-    for (std::size_t i = 0; i < size(); ++i) {
-      if (!active[i]) continue;
-      if (const auto l = linearise(T, i)) {
-        sum += l->chi2();
-        ++count;
-      }
-    }
-    return count > 3 ? sum / (2.0 * count - 6.0) : 0.0;
   }
 
  private:
+  // What a step leaves undone is quadratic in it, and small: a step of one standard deviation leaves a hundredth. The
+  // robust phase only has to come near enough for settle() to go on.
+  static constexpr double kRough = 3.0, kFine = 0.1;
+
+  struct Step {
+    Vector6d xi;
+    double sigmas;  // length of the step in standard deviations
+    Eigen::LDLT<Matrix6d> factor;
+  };
+
+  // Keeps what is linearised about this pose already.
+  void linearise(const Eigen::Isometry3d& T_world_camera) {
+    if (at_ && at_->matrix() == T_world_camera.matrix() && sightings_.is_settled()) return;
+    sightings_.linearise(T_world_camera.inverse());
+    at_ = T_world_camera;
+  }
+
+  Step solve(const Eigen::Isometry3d& T, const NormalEquations& sightings) const {
+    const Vector6d from_prior = difference(prior_.T_world_camera, T);
+    const Matrix6d J_prior = prior_jacobian(T, from_prior);
+    const Matrix6d JtI = J_prior.transpose() * prior_.information;
+    const Matrix6d A = sightings.information + JtI * J_prior;
+    Step step{Vector6d::Zero(), 0.0, Eigen::LDLT<Matrix6d>(A)};
+    step.xi = step.factor.solve(sightings.gradient - JtI * from_prior);
+    step.sigmas = std::sqrt(std::max(0.0, step.xi.dot(A * step.xi)));
+    return step;
+  }
+
+  PoseUpdate outcome(const Eigen::Isometry3d& T, const ArrayXd& fits, const NormalEquations& equations,
+                     const Step& last) const {
+    PoseUpdate result;
+    result.T_world_camera = moved(T, last.xi);
+    result.covariance = last.factor.solve(Matrix6d::Identity());
+    result.sightings = {T, equations.information, equations.gradient};
+    result.is_inlier.resize(observations_.size());
+    for (std::size_t i = 0; i < observations_.size(); ++i) result.is_inlier[i] = fits(static_cast<Eigen::Index>(i)) > 0;
+    result.inlier_count = static_cast<int>(fits.sum());
+    // χ² at the pose after the step, to second order.
+    const double chi2 = equations.chi2 - last.xi.dot(2.0 * equations.gradient - equations.information * last.xi);
+    if (result.inlier_count > 3) result.chi2_per_dof = chi2 / (2.0 * result.inlier_count - 6.0);
+    return result;
+  }
+
+  static Eigen::Isometry3d moved(const Eigen::Isometry3d& T, const Vector6d& xi) {
+    Eigen::Isometry3d next = T * perturbation(xi);
+    next.linear() = exp_so3(log_so3(next.linear()));
+    return next;
+  }
+
   // How the difference from the prior moves with xi: the pose's axes have turned away from the prior's.
   Matrix6d prior_jacobian(const Eigen::Isometry3d& T, const Vector6d& from_prior) const {
     Matrix6d J = Matrix6d::Zero();
@@ -130,51 +151,48 @@ class PoseProblem {
     return I.inverse();
   }
 
-  const Camera& camera_;
+  Sightings sightings_;
   const PosePrior& prior_;
   std::span<const PointObservation> observations_;
   const PoseUpdateOptions& options_;
+  std::optional<Eigen::Isometry3d> at_;  // where the sightings are linearised
 };
+
+template <class Sightings>
+std::optional<PoseUpdate> solve(PoseProblem<Sightings> problem, const PosePrior& prior, int least_inliers) {
+  const ArrayXd gated = problem.gate_about_prior();
+  if (gated.sum() < least_inliers) return std::nullopt;
+  // Graduated non-convexity: the weight function narrows from far beyond the gate down to it.
+  Eigen::Isometry3d T = prior.T_world_camera;
+  constexpr double kFactor = 8.0, kWidest = 1e24;
+  double mu = 1.0;
+  while (mu < kWidest && problem.is_too_narrow(gated, mu / kFactor)) mu *= kFactor;
+  for (; mu > 1.0; mu /= kFactor) T = problem.descend(T, gated, mu);
+  return problem.settle(problem.descend(T, gated, 1.0));
+}
 
 }  // namespace
 
 std::optional<PoseUpdate> update_pose(const Camera& camera, const PosePrior& prior,
                                       std::span<const PointObservation> observations,
                                       const PoseUpdateOptions& options) {
-  const PoseProblem problem(camera, prior, observations, options);
-  const std::vector<bool> gated = problem.gate_about_prior();
-  if (std::count(gated.begin(), gated.end(), true) < options.least_inliers) return std::nullopt;
-
-  // Graduated non-convexity: the weight function narrows from far beyond the gate down to it.
-  PoseUpdate result;
-  Matrix6d information = Matrix6d::Zero();
-  Eigen::Isometry3d T = prior.T_world_camera;
-  for (double mu : {64.0, 8.0, 1.0}) T = problem.descend(T, gated, mu, options.max_iterations / 3, information);
-
-  constexpr double kPlain = 1e12;
-  for (int round = 0; round < 2; ++round) {  // the second round takes back what the first one moved across the gate
-    result.is_inlier = problem.inliers_at(T);
-    result.inlier_count = static_cast<int>(std::count(result.is_inlier.begin(), result.is_inlier.end(), true));
-    if (result.inlier_count < options.least_inliers) return std::nullopt;
-    T = problem.descend(T, result.is_inlier, kPlain, options.max_iterations / 3, information);
+  const bool is_exact =
+      camera.distortion == BrownConrady{} && (options.map_uncertainty == MapUncertainty::Ignored ||
+                                              std::all_of(observations.begin(), observations.end(), has_exact_point));
+  if (is_exact) {
+    ExactSightings sightings(camera, observations, options.variance_factor);
+    return solve(PoseProblem(std::move(sightings), prior, observations, options), prior, options.least_inliers);
   }
-  const Eigen::LDLT<Matrix6d> factor(information);
-  if (!factor.isPositive() || factor.rcond() < 1e-16) return std::nullopt;
-  result.T_world_camera = T;
-  result.covariance = factor.solve(Matrix6d::Identity());
-  result.chi2_per_dof = problem.chi2_per_dof(T, result.is_inlier);
-  return result;
+  PointwiseSightings sightings(camera, observations, options.variance_factor, options.map_uncertainty);
+  return solve(PoseProblem(std::move(sightings), prior, observations, options), prior, options.least_inliers);
 }
 
 std::optional<Eigen::Matrix2d> measurement_noise(const Camera& camera, const Eigen::Isometry3d& T_world_camera,
-                                                 const PointObservation& observation, bool map_covariance) {
-  PosePrior here;
-  here.T_world_camera = T_world_camera;
-  PoseUpdateOptions options;
-  options.map_covariance = map_covariance;
-  const auto l = PoseProblem(camera, here, {&observation, 1}, options).linearise(T_world_camera, 0);
-  if (!l) return std::nullopt;
-  return l->R_inverse.inverse();
+                                                 const PointObservation& observation, MapUncertainty map_uncertainty) {
+  PointwiseSightings sighting(camera, {&observation, 1}, 1.0, map_uncertainty);
+  sighting.linearise(T_world_camera.inverse());
+  if (!std::isfinite(sighting.chi2()(0))) return std::nullopt;
+  return sighting.noise(0);
 }
 
 }  // namespace alidade

@@ -7,6 +7,7 @@
 
 #include "camera/camera.h"
 #include "camera/measurement.h"
+#include "estimation/uncertain_point.h"
 #include "geometry/pose.h"
 
 namespace alidade {
@@ -22,12 +23,22 @@ struct PoseUpdateOptions {
   double loosest_gate_px = 60.0;  ///< however uncertain the prediction, a match farther off is not considered
   int max_iterations = 12;        ///< Gauss–Newton steps of the robust phase; 5 are usual
   int least_inliers = 6;          ///< fewer leave the pose unanswered
-  bool map_covariance = true;     ///< R_i = σ²I + J_X P_X J_Xᵀ; false: R_i = σ²I, as in the paper
+  MapUncertainty map_uncertainty = MapUncertainty::Refitted;
+  double variance_factor = 1.0;  ///< on the observations' sigma_px²
+};
+
+/// What the sightings alone say of the pose, to second order: log p(z | T_world_camera * perturbation(ξ)) =
+/// gradientᵀ ξ - ½ ξᵀ information ξ + constant, in m and rad.
+struct PoseLikelihood {
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  Matrix6d information = Matrix6d::Zero();
+  Vector6d gradient = Vector6d::Zero();
 };
 
 struct PoseUpdate {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   Matrix6d covariance = Matrix6d::Zero();  ///< of the right perturbation, m and rad
+  PoseLikelihood sightings;                ///< the inliers' share in it, about T_world_camera
   std::vector<bool> is_inlier;             ///< one per observation
   int inlier_count = 0;
   double chi2_per_dof = 0.0;  ///< of the inliers' whitened residuals; 1 where sigma_px is right
@@ -44,6 +55,6 @@ std::optional<PoseUpdate> update_pose(const Camera& camera, const PosePrior& pri
 
 /// The measurement noise of an observation, R_i (px²), for a camera at T_world_camera; empty where it is not visible.
 std::optional<Eigen::Matrix2d> measurement_noise(const Camera& camera, const Eigen::Isometry3d& T_world_camera,
-                                                 const PointObservation& observation, bool map_covariance);
+                                                 const PointObservation& observation, MapUncertainty map_uncertainty);
 
 }  // namespace alidade

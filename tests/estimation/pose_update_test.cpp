@@ -237,14 +237,14 @@ TEST(MeasurementNoise, AddsTheMapsToThePixels) {
   o.p_world = {0, 0, 5};
   o.sigma_px = 2;
   o.covariance_world = Eigen::Vector3d(0.01, 0.04, 100).asDiagonal();
-  const auto noise = measurement_noise(camera, T, o, true);
+  const auto noise = measurement_noise(camera, T, o, MapUncertainty::Inflated);
   ASSERT_TRUE(noise);
   EXPECT_NEAR((*noise)(0, 0), 4 + 104.0 * 104.0 * 0.04, 1e-6);
   EXPECT_NEAR((*noise)(1, 1), 4 + 103.0 * 103.0 * 0.01, 1e-6);
   EXPECT_NEAR((*noise)(0, 1), 0, 1e-9);
-  EXPECT_LT((*measurement_noise(camera, T, o, false) - 4 * Eigen::Matrix2d::Identity()).norm(), 1e-9);
+  EXPECT_LT((*measurement_noise(camera, T, o, MapUncertainty::Ignored) - 4 * Eigen::Matrix2d::Identity()).norm(), 1e-9);
   o.p_world.z() = -5;
-  EXPECT_FALSE(measurement_noise(camera, T, o, true));
+  EXPECT_FALSE(measurement_noise(camera, T, o, MapUncertainty::Inflated));
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ inline std::vector<PointObservation> observations_of(const PointMap& map, std::s
   std::vector<PointObservation> observations;
   for (const Sighting& s : map.keyframes[keyframe].sightings) {
     const MapPoint& point = map.points[static_cast<std::size_t>(s.point)];
-    observations.push_back({s.pixel, s.sigma_px, point.p_world, point.covariance_world});
+    observations.push_back({s.pixel, s.sigma_px, point.p_world, point.covariance_world, {}});
   }
   return observations;
 }
