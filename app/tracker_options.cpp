@@ -22,7 +22,11 @@ void bind(OptionFields& fields, CameraTrackerOptions& o) {
   fields.add("start.least_inliers", o.start.two_view.least_inliers, "", "matches that the first two keyframes need");
   fields.add("update.gate_chi2", o.update.gate_chi2, "",
              "squared whitened residual beyond which a match is an outlier");
-  fields.add("update.map_covariance", o.update.map_covariance, "", "add the map's covariance to the measurement noise");
+  fields.add_choice("update.map_uncertainty", o.update.map_uncertainty,
+                    {{"ignored", MapUncertainty::Ignored},
+                     {"inflated", MapUncertainty::Inflated},
+                     {"refitted", MapUncertainty::Refitted}},
+                    "the map's covariance: left out; added to the measurement noise; and its points fitted along");
   fields.add("growth.neighbours", o.growth.neighbours, "", "keyframes that a new one is matched with");
   fields.add("growth.ratio", o.growth.ratio, "", "descriptor distance, nearest to second nearest");
   fields.add("growth.least_angle_deg", o.growth.least_angle_deg, "deg", "between the rays of a new point");

@@ -84,8 +84,8 @@ std::optional<RansacPose> solve_pnp_ransac(const Camera& camera, std::span<const
   std::vector<int> inliers;
   try {
     if (!cv::solvePnPRansac(c.object, c.image, pinhole(camera), cv::noArray(), rotation, translation, false,
-                            options.iterations, static_cast<float>(options.threshold_px), 0.9999, inliers,
-                            cv::SOLVEPNP_P3P)) {
+                            options.iterations, static_cast<float>(options.threshold_px), options.confidence, inliers,
+                            options.sample_by_epnp ? cv::SOLVEPNP_EPNP : cv::SOLVEPNP_P3P)) {
       return std::nullopt;
     }
   } catch (const cv::Exception&) {

@@ -28,11 +28,13 @@ struct RansacPose {
 struct RansacPnpOptions {
   double threshold_px = 4.0;
   int iterations = 1000;  ///< finds four inliers of 30 % with 99.97 %
+  double confidence = 0.9999;
+  bool sample_by_epnp = false;  ///< EPnP on five points, as it is often used; else P3P
   int least_inliers = 15;
 };
 
-/// Pose from observations with outliers: P3P in RANSAC, refined on its inliers. Empty where fewer than least_inliers
-/// agree. Deterministic.
+/// Pose from observations with outliers: P3P (or EPnP) in RANSAC, refined on its inliers. Empty where fewer than
+/// least_inliers agree. Deterministic.
 std::optional<RansacPose> solve_pnp_ransac(const Camera& camera, std::span<const PointObservation> observations,
                                            const RansacPnpOptions& options = {});
 

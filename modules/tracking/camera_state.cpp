@@ -2,71 +2,220 @@
 #include "tracking/camera_state.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 #include "camera/rolling_shutter.h"
 #include "geometry/rotation.h"
 
 namespace alidade {
+namespace {
+
+// The rotation vector of a step.
+Eigen::Vector3d turn_of(const CameraState& state, double dt) {
+  return dt * state.omega_camera + 0.5 * dt * dt * state.alpha_camera;
+}
+
+// F as its blocks, most of which are zero or multiples of one.
+struct Transition {
+  double dt;
+  Eigen::Matrix3d R_next_world;
+  Eigen::Matrix3d turned_back;  // R_next_now
+  Eigen::Matrix3d J_turn;
+
+  // F times the columns of M, which are errors of a state.
+  template <int Columns>
+  Eigen::Matrix<double, 18, Columns> operator*(const Eigen::Matrix<double, 18, Columns>& M) const {
+    const auto rows = [&M](int first) { return M.template middleRows<3>(first); };
+    Eigen::Matrix<double, 18, Columns> FM = M;
+    // The translation error is counted along the camera's own axes, which have turned by the new pose.
+    FM.template middleRows<3>(0) = turned_back * rows(0) + R_next_world * (dt * rows(6) + 0.5 * dt * dt * rows(12));
+    FM.template middleRows<3>(3) = turned_back * rows(3) + J_turn * (dt * rows(9) + 0.5 * dt * dt * rows(15));
+    FM.template middleRows<6>(6) += dt * M.template middleRows<6>(12);
+    return FM;
+  }
+};
+
+Transition transition(const CameraState& state, const CameraState& predicted) {
+  const double dt = to_seconds(predicted.time - state.time);
+  const Eigen::Matrix3d R_next_world = predicted.T_world_camera.linear().transpose();
+  return {dt, R_next_world, R_next_world * state.T_world_camera.linear(), right_jacobian_so3(turn_of(state, dt))};
+}
+
+// G Q Gᵀ, where the noise moves pose, velocities and accelerations by G's three blocks.
+Matrix18d spread(const std::array<Matrix6d, 3>& G, const Matrix6d& Q) {
+  Matrix18d spread;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      spread.block<6, 6>(6 * row, 6 * column) = G[row] * Q * G[column].transpose();
+    }
+  }
+  return spread;
+}
+
+// How the pose that is measured in a map moves with the map's offset: a map displaced one way shows the camera
+// displaced the other.
+Matrix6d jacobian_of_offset(const CameraState& state) {
+  const Eigen::Matrix3d R_camera_world = state.T_world_camera.linear().transpose();
+  Matrix6d J = Matrix6d::Zero();
+  J.topLeftCorner<3, 3>() = -R_camera_world;
+  J.topRightCorner<3, 3>() = R_camera_world * skew(state.T_world_camera.translation() - state.map_offset.centre_world);
+  J.bottomRightCorner<3, 3>() = -R_camera_world;
+  return J;
+}
+
+}  // namespace
+
+CameraState moved_by(CameraState state, const Vector18d& error) {
+  state.T_world_camera = state.T_world_camera * perturbation(error.head<6>());
+  state.v_world += error.segment<3>(6);
+  state.omega_camera += error.segment<3>(9);
+  state.a_world += error.segment<3>(12);
+  state.alpha_camera += error.segment<3>(15);
+  return state;
+}
+
+Vector18d error_between(const CameraState& from, const CameraState& to) {
+  Vector18d error;
+  error << difference(from.T_world_camera, to.T_world_camera), to.v_world - from.v_world,
+      to.omega_camera - from.omega_camera, to.a_world - from.a_world, to.alpha_camera - from.alpha_camera;
+  return error;
+}
 
 CameraState predict(const CameraState& state, Timestamp time, const MotionNoise& noise) {
+  CameraState next = predict_without_noise(state, time);
+  next.covariance += noise_covariance(state, next, noise);
+  return next;
+}
+
+CameraState predict_without_noise(const CameraState& state, Timestamp time) {
   const double dt = std::max(0.0, to_seconds(time - state.time));
   CameraState next = state;
-  next.time = time;
-  next.T_world_camera.translation() += state.v_world * dt;
-  const Eigen::Matrix3d turn = exp_so3(state.omega_camera * dt);
+  next.time = std::max(time, state.time);
+  next.T_world_camera.translation() += dt * state.v_world + 0.5 * dt * dt * state.a_world;
+  const Eigen::Matrix3d turn = exp_so3(turn_of(state, dt));
   next.T_world_camera.linear() = state.T_world_camera.linear() * turn;
+  next.v_world += dt * state.a_world;
+  next.omega_camera += dt * state.alpha_camera;
 
-  // The translation error is counted along the camera's own axes, which have turned by the new pose.
-  const Eigen::Matrix3d R_next_world = next.T_world_camera.linear().transpose();
-  Matrix12d F = Matrix12d::Identity();
-  F.block<3, 3>(0, 0) = turn.transpose();
-  F.block<3, 3>(0, 6) = dt * R_next_world;
-  F.block<3, 3>(3, 3) = turn.transpose();
-  const Eigen::Matrix3d J_turn = dt * right_jacobian_so3(state.omega_camera * dt);
-  F.block<3, 3>(3, 9) = J_turn;
-
-  Eigen::Matrix<double, 12, 6> G = Eigen::Matrix<double, 12, 6>::Zero();  // eqs. 5, 6: V = aΔt, Ω = αΔt
-  G.block<3, 3>(0, 0) = dt * dt * R_next_world;
-  G.block<3, 3>(6, 0) = dt * Eigen::Matrix3d::Identity();
-  G.block<3, 3>(3, 3) = dt * J_turn;
-  G.block<3, 3>(9, 3) = dt * Eigen::Matrix3d::Identity();
-  Vector6d q;
-  q << Eigen::Vector3d::Constant(noise.acceleration * noise.acceleration),
-      Eigen::Vector3d::Constant(noise.angular_acceleration * noise.angular_acceleration);
-  next.covariance = F * state.covariance * F.transpose() + G * q.asDiagonal() * G.transpose();
+  const Transition F = transition(state, next);
+  next.covariance = F * Matrix18d((F * state.covariance).transpose());  // F P Fᵀ: P is symmetric
+  next.map_offset.cross = F * state.map_offset.cross;
   return next;
+}
+
+Matrix18d noise_covariance(const CameraState& state, const CameraState& predicted, const MotionNoise& noise) {
+  const double dt = to_seconds(predicted.time - state.time);
+  // What the noise does to the pose, in its own axes.
+  const Transition F = transition(state, predicted);
+  Matrix6d to_pose = Matrix6d::Zero();
+  to_pose.topLeftCorner<3, 3>() = F.R_next_world;
+  to_pose.bottomRightCorner<3, 3>() = F.J_turn;
+  const Matrix6d I = Matrix6d::Identity();
+  Matrix18d Q = Matrix18d::Zero();
+  if (!noise.acceleration.isZero(0.0)) {  // eqs. 5, 6: V = aΔt, Ω = αΔt
+    Q += spread({dt * dt * to_pose, dt * I, 0.0 * I}, noise.acceleration);
+  }
+  if (!noise.jerk.isZero(0.0)) Q += spread({dt * dt * dt / 6.0 * to_pose, 0.5 * dt * dt * I, dt * I}, noise.jerk);
+  if (!noise.jump.isZero(0.0)) Q += spread({0.5 * dt * dt * to_pose, dt * I, I}, noise.jump);
+  return Q;
+}
+
+Matrix18d transition_jacobian(const CameraState& state, const CameraState& predicted) {
+  return transition(state, predicted) * Matrix18d(Matrix18d::Identity());
+}
+
+CameraState absorb(const CameraState& predicted, const PoseLikelihood& sightings) {
+  const PoseLikelihood z = about(predicted.T_world_camera, sightings);
+  const MapOffset& offset = predicted.map_offset;
+  const Matrix6d of_offset = jacobian_of_offset(predicted);
+  // Covariances with the pose in the map: of all of the state, of the pose in the map itself and of the offset.
+  const Matrix18x6 C = predicted.covariance.leftCols<6>() + offset.cross * of_offset.transpose();
+  const Matrix6d C_map =
+      C.topRows<6>() + of_offset * (offset.cross.topRows<6>().transpose() + offset.covariance * of_offset.transpose());
+  const Matrix6d C_offset = offset.cross.topRows<6>().transpose() + offset.covariance * of_offset.transpose();
+  const Matrix18x6 gain = C * (Matrix6d::Identity() + z.information * C_map).inverse();  // of the gradient
+  const Matrix18x6 K = gain * z.information;                                             // of the pose in the map
+  const Vector18d error = gain * z.gradient;
+
+  CameraState state = moved_by(predicted, error);
+  // Joseph's form of P - K Cᵀ: (I - K H) P (I - K H)ᵀ + K R Kᵀ over state and offset, whose own gain is zero.
+  const Matrix18d K_C = K * C.transpose();
+  const Matrix18x6 from_map = K * C_map + gain;
+  state.covariance = predicted.covariance - K_C - K_C.transpose() + K * from_map.transpose();
+  state.map_offset.cross = offset.cross - K * C_offset.transpose();
+  // The error is counted from the new pose, along its axes.
+  Matrix6d reset = Matrix6d::Zero();
+  reset.topLeftCorner<3, 3>() = exp_so3(error.segment<3>(3)).transpose();
+  reset.bottomRightCorner<3, 3>() = right_jacobian_so3(error.segment<3>(3));
+  state.covariance.topRows<6>() = (reset * state.covariance.topRows<6>()).eval();
+  state.covariance.leftCols<6>() = (state.covariance.leftCols<6>() * reset.transpose()).eval();
+  state.covariance = 0.5 * (state.covariance + state.covariance.transpose()).eval();
+  state.map_offset.cross.topRows<6>() = (reset * state.map_offset.cross.topRows<6>()).eval();
+  return state;
 }
 
 CameraState absorb(const CameraState& predicted, const Eigen::Isometry3d& T_world_camera,
                    const Matrix6d& pose_covariance) {
-  CameraState state = predicted;
   const Vector6d xi = difference(predicted.T_world_camera, T_world_camera);
   const Matrix6d P = predicted.covariance.topLeftCorner<6, 6>();
   // How all of the state follows the pose: P_{:,pose} P_pose⁻¹.
-  const Eigen::Matrix<double, 12, 6> follow = P.ldlt().solve(predicted.covariance.topRows<6>()).transpose();
-  const Eigen::Matrix<double, 6, 1> velocity = follow.bottomRows<6>() * xi;
+  const Matrix18x6 follow = P.ldlt().solve(predicted.covariance.topRows<6>()).transpose();
+  CameraState state = moved_by(predicted, follow * xi);
   state.T_world_camera = T_world_camera;
-  state.v_world += velocity.head<3>();
-  state.omega_camera += velocity.tail<3>();
   state.covariance = predicted.covariance + follow * (pose_covariance - P) * follow.transpose();
   state.covariance = 0.5 * (state.covariance + state.covariance.transpose()).eval();
   return state;
 }
 
+Matrix6d covariance_in_map(const CameraState& state) {
+  const Matrix6d J = jacobian_of_offset(state);
+  const Matrix6d shared = state.map_offset.cross.topRows<6>() * J.transpose();
+  return state.covariance.topLeftCorner<6, 6>() + shared + shared.transpose() +
+         J * state.map_offset.covariance * J.transpose();
+}
+
+double log_evidence(const CameraState& predicted, const PoseLikelihood& sightings) {
+  return log_evidence(covariance_in_map(predicted), about(predicted.T_world_camera, sightings));
+}
+
+double log_evidence(const Matrix6d& covariance_in_map, const PoseLikelihood& sightings_about_prediction) {
+  const PoseLikelihood& z = sightings_about_prediction;
+  const Eigen::PartialPivLU<Matrix6d> M(Matrix6d::Identity() + covariance_in_map * z.information);
+  // The sightings' own optimum takes its part out, so that only the distance to the prediction counts.
+  const double fit = z.gradient.dot(M.solve(covariance_in_map * z.gradient));
+  const double best = z.gradient.dot(z.information.ldlt().solve(z.gradient));
+  return 0.5 * (fit - best) - 0.5 * std::log(M.determinant());
+}
+
+PoseLikelihood about(const Eigen::Isometry3d& T_world_camera, const PoseLikelihood& likelihood) {
+  const Vector6d off = difference(T_world_camera, likelihood.T_world_camera);
+  Matrix6d J = Matrix6d::Zero();  // ∂(perturbation of likelihood.T_world_camera)/∂(perturbation of T_world_camera)
+  J.topLeftCorner<3, 3>() = likelihood.T_world_camera.linear().transpose() * T_world_camera.linear();
+  J.bottomRightCorner<3, 3>() = right_jacobian_so3(off.tail<3>());
+  PoseLikelihood moved;
+  moved.T_world_camera = T_world_camera;
+  moved.information = J.transpose() * likelihood.information * J;
+  moved.gradient = J.transpose() * likelihood.gradient + moved.information * off;
+  return moved;
+}
+
 MotionNoise adapt(const MotionNoise& noise, const CameraState& before, const CameraState& after, double share) {
   const double dt = to_seconds(after.time - before.time);
   if (!(dt > 0)) return noise;
-  const auto blend = [share](double sigma, double change_squared) {
-    const double next = (1.0 - share) * sigma * sigma + share * change_squared;
-    return std::sqrt(std::max(next, 1e-4 * sigma * sigma));
+  const auto blend = [share](double variance, double change_squared) {
+    return std::max((1.0 - share) * variance + share * change_squared, 1e-4 * variance);
   };
   // A third of the squared norm is the variance per axis; twice that keeps the prior on the loose side.
   const double a2 = (after.v_world - before.v_world).squaredNorm() / (dt * dt) * 2.0 / 3.0;
   const double alpha2 = (after.omega_camera - before.omega_camera).squaredNorm() / (dt * dt) * 2.0 / 3.0;
-  return {blend(noise.acceleration, a2), blend(noise.angular_acceleration, alpha2)};
+  const Vector6d now = noise.acceleration.diagonal();
+  MotionNoise next = noise;
+  next.acceleration = isotropic_noise(std::sqrt(blend(now(0), a2)), std::sqrt(blend(now(3), alpha2)));
+  return next;
 }
 
 CameraState resting_state(Timestamp time, const Eigen::Isometry3d& T_world_camera, const Matrix6d& pose_covariance,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -8,42 +9,83 @@
 #include "core/time.h"
 #include "estimation/pose_update.h"
 #include "geometry/pose.h"
+#include "tracking/motion_noise.h"
 
 namespace alidade {
 
-using Matrix12d = Eigen::Matrix<double, 12, 12>;
+using Vector18d = Eigen::Matrix<double, 18, 1>;
+using Matrix18d = Eigen::Matrix<double, 18, 18>;
+using Matrix18x6 = Eigen::Matrix<double, 18, 6>;
 
-/// The filter's state: where the camera is and how it moves. The map is not part of it.
+/// What the sightings of one map have in common: the map lies displaced as a rigid body, by a vector and a rotation
+/// vector about `centre`. It is never estimated, only considered (Schmidt 1966): the state knows how it depends on it.
+struct MapOffset {
+  Eigen::Vector3d centre_world = Eigen::Vector3d::Zero();
+  Matrix6d covariance = Matrix6d::Zero();  ///< m and rad, world axes; zero: there is none
+  Matrix18x6 cross = Matrix18x6::Zero();   ///< covariance of the state's error with it
+};
+
+/// The filter's state: where the camera is and how it moves. The map is not part of it. Where the accelerations are
+/// known to be zero (no covariance, no jerk), it is the paper's constant velocity.
 struct CameraState {
   Timestamp time{};
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   Eigen::Vector3d v_world = Eigen::Vector3d::Zero();       ///< m/s
   Eigen::Vector3d omega_camera = Eigen::Vector3d::Zero();  ///< rad/s, body axes
-  /// Of the error (xi of the pose: translation and rotation in camera axes; v_world; omega_camera); m, rad, s.
-  Matrix12d covariance = Matrix12d::Identity();
+  Eigen::Vector3d a_world = Eigen::Vector3d::Zero();       ///< m/s²
+  Eigen::Vector3d alpha_camera = Eigen::Vector3d::Zero();  ///< rad/s², body axes
+  /// Of the error (xi of the pose: translation and rotation in camera axes; v_world; omega_camera; a_world;
+  /// alpha_camera); m, rad, s.
+  Matrix18d covariance = Matrix18d::Identity();
+  MapOffset map_offset;
 };
 
-/// Standard deviations of the accelerations that the constant-velocity model leaves out.
-struct MotionNoise {
-  double acceleration = 1.0;          ///< m/s²
-  double angular_acceleration = 1.0;  ///< rad/s²
-};
+/// The state moved by an error as CameraState::covariance counts it, and the error that moves `from` to `to`.
+CameraState moved_by(CameraState state, const Vector18d& error);
+Vector18d error_between(const CameraState& from, const CameraState& to);
 
-/// Where the camera will be at `time`: constant velocity, with the accelerations as noise. A time before the state's
+/// Where the camera will be at `time`: constant acceleration, with what changes it as noise. A time before the state's
 /// is taken as the state's own.
-/// Source: camera-tracker paper eqs. 1–7, as an error state (rotation error in the tangent space, body axes).
+/// Source: camera-tracker paper eqs. 1–7, as an error state (rotation error in the tangent space, body axes), with
+/// accelerations.
 CameraState predict(const CameraState& state, Timestamp time, const MotionNoise& noise);
 
-/// The state after its pose has been measured: the pose and its covariance become the update's, the velocities follow
-/// through their correlation with it. Equal to the Kalman update, as the measurements depend on the pose alone.
+/// predict() without noise, and what noise adds to its covariance.
+CameraState predict_without_noise(const CameraState& state, Timestamp time);
+Matrix18d noise_covariance(const CameraState& state, const CameraState& predicted, const MotionNoise& noise);
+
+/// F of the step to `predicted`: how an error of `state` carries over, ∂error(predicted)/∂error(state).
+Matrix18d transition_jacobian(const CameraState& state, const CameraState& predicted);
+
+/// The state after the sightings of a frame: the Kalman update, in information form about the pose and Joseph form for
+/// the covariance, with the map's offset considered. The sightings may determine the pose in part only.
+CameraState absorb(const CameraState& predicted, const PoseLikelihood& sightings);
+
+/// The same where only the outcome is known: the pose and its covariance become those given, all else follows through
+/// its correlation with the pose.
 CameraState absorb(const CameraState& predicted, const Eigen::Isometry3d& T_world_camera,
                    const Matrix6d& pose_covariance);
 
+/// What a frame's sightings are expected to measure: the pose in the map as the map lies, P_pose and the map's offset.
+/// 6×6, of the right perturbation.
+Matrix6d covariance_in_map(const CameraState& state);
+
+/// The log of the probability density that the prediction gives to the sightings, up to a constant that depends on the
+/// sightings alone: the innovation likelihood.
+double log_evidence(const CameraState& predicted, const PoseLikelihood& sightings);
+
+/// The same from the prediction's covariance_in_map and the sightings' likelihood about its pose.
+double log_evidence(const Matrix6d& covariance_in_map, const PoseLikelihood& sightings_about_prediction);
+
+/// The same likelihood as a function of the perturbation of another pose.
+PoseLikelihood about(const Eigen::Isometry3d& T_world_camera, const PoseLikelihood& likelihood);
+
 /// The noise that the last step speaks for: a running mean square of the velocity changes, so that a manoeuvre opens
-/// the gate and calm closes it. `share` is the weight of this step.
+/// the gate and calm closes it. `share` is the weight of this step; the noise stays alike along all axes.
 MotionNoise adapt(const MotionNoise& noise, const CameraState& before, const CameraState& after, double share);
 
-/// A state at rest at a pose, with velocities unknown by the given standard deviations (m/s, rad/s).
+/// A state at rest at a pose, with velocities unknown by the given standard deviations (m/s, rad/s) and without
+/// acceleration.
 CameraState resting_state(Timestamp time, const Eigen::Isometry3d& T_world_camera, const Matrix6d& pose_covariance,
                           double v_sigma, double omega_sigma);
 

@@ -99,7 +99,7 @@ void CameraTracker::adopt(StartedMap started, const ImageFrame& frame) {
   state_.v_world = (b.T_world_camera.translation() - a.T_world_camera.translation()) / dt;
   state_.omega_camera = motion.tail<3>() / dt;
   // One step's time is not known yet; the pair's is an upper bound, so these are corrected upwards by adapt().
-  noise_ = {speed / dt, std::max(turn_rate, 0.05 / dt) / dt};
+  noise_.acceleration = isotropic_noise(speed / dt, std::max(turn_rate, 0.05 / dt) / dt);
   has_pose_ = true;
   missed_ = 0;
   retrack_from_last_keyframe();
@@ -166,7 +166,7 @@ FrameReport CameraTracker::accept(const ImageFrame& frame, const CameraState& pr
     // Found anew, its motion is unknown: a hand turns by a radian per second and crosses half the depth in one.
     const double depth = median_range(update.T_world_camera, attempt.found);
     next = resting_state(frame.time, update.T_world_camera, update.covariance, 0.5 * depth, 1.0);
-    noise_ = {2.0 * depth, 10.0};
+    noise_.acceleration = isotropic_noise(2.0 * depth, 10.0);
   }
   if (report.is_keyframe) {
     next.T_world_camera = live_.map.keyframes.back().T_world_camera;

@@ -90,13 +90,22 @@ std::vector<FoundPoint> match_points(const PointMap& map, const std::vector<int>
   return found;
 }
 
+PointObservation as_observation(const MapPoint& point, const Eigen::Vector2d& pixel, double sigma_px) {
+  PointObservation observation;
+  observation.pixel = pixel;
+  observation.sigma_px = sigma_px;
+  observation.p_world = point.p_world;
+  observation.covariance_world = point.covariance_world;
+  return observation;
+}
+
 std::vector<PointObservation> as_observations(const PointMap& map, const std::vector<FoundPoint>& found,
                                               double sigma_px) {
   std::vector<PointObservation> observations;
   observations.reserve(found.size());
   for (const FoundPoint& f : found) {
     const MapPoint& point = map.points[static_cast<std::size_t>(f.point)];
-    observations.push_back({f.pixel, sigma_px, point.p_world, point.covariance_world});
+    observations.push_back(as_observation(point, f.pixel, sigma_px));
   }
   return observations;
 }

@@ -51,6 +51,9 @@ std::vector<FoundPoint> search_points(const Camera& camera, const PointMap& map,
 std::vector<FoundPoint> match_points(const PointMap& map, const std::vector<int>& candidates, const Features& features,
                                      double ratio);
 
+/// A map point seen at a pixel, for an estimator.
+PointObservation as_observation(const MapPoint& point, const Eigen::Vector2d& pixel, double sigma_px);
+
 /// What the found points say to an estimator.
 std::vector<PointObservation> as_observations(const PointMap& map, const std::vector<FoundPoint>& found,
                                               double sigma_px);

@@ -49,7 +49,7 @@ PaperState to_paper_state(const CameraState& state) {
   PaperState paper;
   paper.s << state.T_world_camera.translation(), q.w(), q.x(), q.y(), q.z(), state.v_world, -R * state.omega_camera;
   const Jacobian13x12 J = jacobian_of_paper_state(state);
-  paper.P = J * state.covariance * J.transpose();
+  paper.P = J * state.covariance.topLeftCorner<12, 12>() * J.transpose();
   return paper;
 }
 
@@ -64,7 +64,8 @@ CameraState from_paper_state(const PaperState& paper, Timestamp time) {
   // The 13×12 Jacobian has full column rank: its pseudo-inverse drops the length of q and inverts the rest.
   const Jacobian13x12 J = jacobian_of_paper_state(state);
   const Eigen::Matrix<double, 12, 13> J_inverse = (J.transpose() * J).ldlt().solve(J.transpose());
-  state.covariance = J_inverse * paper.P * J_inverse.transpose();
+  state.covariance.setZero();
+  state.covariance.topLeftCorner<12, 12>() = J_inverse * paper.P * J_inverse.transpose();
   return state;
 }
 

@@ -34,6 +34,7 @@ std::optional<PoseUpdate> from_frame_alone(PnpMethod method, const Camera& camer
   if (!covariance) return std::nullopt;
   update.T_world_camera = *T;
   update.covariance = *covariance;
+  update.sightings = {*T, covariance->inverse(), Vector6d::Zero()};
   return update;
 }
 

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "reconstruction/bundle_covariance.h"
+#include "tracking/map_search.h"
 #include "tracking/sighting_alignment.h"
 
 namespace alidade {
@@ -164,7 +165,7 @@ std::vector<FrameReport> relocate_frames(const Camera& camera, const PointMap& m
     for (const FrameSighting& s : report.sightings) {
       if (!s.is_inlier) continue;
       const MapPoint& point = map.points[static_cast<std::size_t>(s.point)];
-      observations.push_back({s.pixel, report.sigma_px, point.p_world, point.covariance_world});
+      observations.push_back(as_observation(point, s.pixel, report.sigma_px));
     }
     PosePrior prior;
     prior.T_world_camera = report.T_world_camera;

@@ -10,6 +10,7 @@
 #include "features/matching.h"
 #include "reconstruction/bundle_covariance.h"
 #include "tracking/map_growth.h"
+#include "tracking/map_search.h"
 
 namespace alidade {
 
@@ -152,7 +153,7 @@ std::vector<FrameReport> MapStarter::locate_waiting(const LiveMap& live) const {
       const int point = live.features[0].point_of_feature[f];
       if (point < 0 || !waiting.pixels[f]) continue;
       const MapPoint& p = live.map.points[static_cast<std::size_t>(point)];
-      observations.push_back({*waiting.pixels[f], options_.sigma_px, p.p_world, p.covariance_world});
+      observations.push_back(as_observation(p, *waiting.pixels[f], options_.sigma_px));
       report.sightings.push_back({point, *waiting.pixels[f], false});
     }
     PosePrior prior;

@@ -1,39 +1,66 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "geometry/rotation.h"
 #include "tests/geometry/random_geometry.h"
 #include "tracking/camera_state.h"
 
 namespace alidade::test {
 
-using Vector12d = Eigen::Matrix<double, 12, 1>;
-
-/// A state moved by an error in the order of its covariance.
-inline CameraState moved(CameraState state, const Vector12d& error) {
-  state.T_world_camera = state.T_world_camera * perturbation(error.head<6>());
-  state.v_world += error.segment<3>(6);
-  state.omega_camera += error.tail<3>();
-  return state;
+/// A random covariance matrix with all of its entries about `sigma` squared times its size.
+template <int kSize>
+Eigen::Matrix<double, kSize, kSize> random_covariance(RandomGeometry& random, double sigma) {
+  Eigen::Matrix<double, kSize, kSize> A;
+  for (double& value : A.reshaped()) value = random.normal(sigma);
+  return A * A.transpose();
 }
 
-/// The error that moves `from` to `to`.
-inline Vector12d error_between(const CameraState& from, const CameraState& to) {
-  Vector12d error;
-  error << difference(from.T_world_camera, to.T_world_camera), to.v_world - from.v_world,
-      to.omega_camera - from.omega_camera;
-  return error;
-}
-
-/// A random pose with velocities of about 1 m/s and 1 rad/s, all correlated; `sigma` scales the standard deviations.
+/// A random pose with velocities and accelerations of about 1 m/s, 1 rad/s, 1 m/s² and 1 rad/s², all correlated;
+/// `sigma` scales the standard deviations.
 inline CameraState random_state(RandomGeometry& random, double sigma) {
   CameraState state;
   state.T_world_camera = random.pose();
   state.v_world = random.vector();
   state.omega_camera = random.vector();
-  Matrix12d A;
-  for (double& value : A.reshaped()) value = random.normal(sigma);
-  state.covariance = A * A.transpose();
+  state.a_world = random.vector();
+  state.alpha_camera = random.vector();
+  state.covariance = random_covariance<18>(random, sigma);
   return state;
+}
+
+/// The same without accelerations, which are known to be zero: the paper's state.
+inline CameraState random_unaccelerated_state(RandomGeometry& random, double sigma) {
+  CameraState state = random_state(random, sigma);
+  state.a_world.setZero();
+  state.alpha_camera.setZero();
+  state.covariance.bottomRows<6>().setZero();
+  state.covariance.rightCols<6>().setZero();
+  return state;
+}
+
+/// A state whose accelerations have changed by (translation in world axes, rotation in camera axes).
+inline CameraState jumped(CameraState state, const Vector6d& jump) {
+  state.a_world += jump.head<3>();
+  state.alpha_camera += jump.tail<3>();
+  return state;
+}
+
+/// Where a state goes in dt under an acceleration that is added to its own throughout, and a jerk, each (translation in
+/// world axes, rotation in camera axes): the polynomials of kinematics. What the acceleration brings is the paper's
+/// a Δt in velocity and a Δt² in place (eqs. 1, 5); it is gone when the step is over.
+inline CameraState driven(const CameraState& state, double dt, const Vector6d& acceleration, const Vector6d& jerk) {
+  CameraState next = state;
+  next.time = state.time + from_seconds(dt);
+  next.T_world_camera.translation() +=
+      dt * state.v_world + dt * dt * (state.a_world / 2 + acceleration.head<3>()) + dt * dt * dt / 6 * jerk.head<3>();
+  next.T_world_camera.linear() *=
+      exp_so3(dt * state.omega_camera + dt * dt * (state.alpha_camera / 2 + acceleration.tail<3>()) +
+              dt * dt * dt / 6 * jerk.tail<3>());
+  next.v_world += dt * (state.a_world + acceleration.head<3>()) + dt * dt / 2 * jerk.head<3>();
+  next.omega_camera += dt * (state.alpha_camera + acceleration.tail<3>()) + dt * dt / 2 * jerk.tail<3>();
+  next.a_world += dt * jerk.head<3>();
+  next.alpha_camera += dt * jerk.tail<3>();
+  return next;
 }
 
 }  // namespace alidade::test

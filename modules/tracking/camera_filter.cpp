@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracking/camera_filter.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+namespace alidade {
+namespace {
+
+constexpr double kLeastVariance = 1e-18;  // px²: where sightings are exact, rounding is all that is left
+constexpr double kMostVariance = 1e4;
+constexpr double kFewDegreesOfFreedom = 100;
+constexpr double kMostDegreesOfFreedom = 1e5;  // the noise may change in the long run
+
+// Whether residuals with this χ² per degree of freedom can come from noise as strong as was assumed.
+bool is_plausible(double chi2_per_dof, double dof) {
+  return std::abs(chi2_per_dof - 1.0) < std::max(0.1, 4.0 * std::sqrt(2.0 / dof));
+}
+
+struct MeasuredPose {
+  PoseUpdate update;
+  SightingNoise noise;
+};
+
+// The pose by a prior that allows for every manoeuvre, with the sightings' noise corrected until the residuals bear it
+// out.
+std::optional<MeasuredPose> measure(const Camera& camera, const PosePrior& prior, SightingNoise noise,
+                                    std::span<const PointObservation> observations,
+                                    const CameraFilterOptions& options) {
+  constexpr int kMostRounds = 30;
+  for (int round = 0;; ++round) {
+    PoseUpdateOptions with_noise = options.update;
+    with_noise.variance_factor = noise.variance;
+    auto update = update_pose(camera, prior, observations, with_noise);
+    if (!update) {
+      const bool is_guess = options.learn_sighting_noise && noise.degrees_of_freedom < kFewDegreesOfFreedom;
+      if (!is_guess || noise.variance > kMostVariance || round >= kMostRounds) return std::nullopt;
+      noise = {4.0 * noise.variance, 0.0};  // the gate by the guess may be too narrow
+      continue;
+    }
+    const double dof = 2.0 * update->inlier_count - 6.0;
+    if (!options.learn_sighting_noise || dof < 1) return MeasuredPose{std::move(*update), noise};
+    const double measured = std::max(kLeastVariance, noise.variance * update->chi2_per_dof);
+    if (is_plausible(update->chi2_per_dof, dof) || measured == noise.variance || round >= kMostRounds) {
+      const double known = std::min(noise.degrees_of_freedom, kMostDegreesOfFreedom);
+      noise.variance = (known * noise.variance + dof * measured) / (known + dof);
+      noise.degrees_of_freedom = known + dof;
+      return MeasuredPose{std::move(*update), noise};
+    }
+    noise = {measured, 0.0};
+  }
+}
+
+}  // namespace
+
+std::optional<FilterStep> filter_step(const Camera& camera, const CameraState& state, const SightingNoise& noise,
+                                      Timestamp time, std::span<const PointObservation> observations,
+                                      const CameraFilterOptions& options) {
+  const MotionProcess& motion = options.motion;
+  const CameraState without_noise = predict_without_noise(state, time);
+  const Matrix6d P = covariance_in_map(without_noise);
+  std::vector<Matrix18d> Q;  // of each mode
+  Matrix6d P_wide = P;       // of the pose, whichever mode it is: the gate must let through what any of them allows
+  for (const MotionMode& mode : motion) {
+    Q.push_back(noise_covariance(state, without_noise, mode.noise));
+    P_wide += Q.back().topLeftCorner<6, 6>();
+  }
+  auto measured = measure(camera, {without_noise.T_world_camera, P_wide.inverse()}, noise, observations, options);
+  if (!measured) return std::nullopt;
+
+  FilterStep step;
+  step.update = std::move(measured->update);
+  step.noise = measured->noise;
+  const PoseLikelihood sightings = about(without_noise.T_world_camera, step.update.sightings);
+  for (std::size_t m = 0; m < motion.size(); ++m) {
+    const Matrix6d P_mode = P + Q[m].topLeftCorner<6, 6>();
+    step.mode_weight.push_back(std::log(motion[m].weight) + log_evidence(P_mode, sightings));
+  }
+  const double greatest = *std::max_element(step.mode_weight.begin(), step.mode_weight.end());
+  double sum = 0.0;
+  for (double& weight : step.mode_weight) sum += weight = std::exp(weight - greatest);
+  step.log_evidence = greatest + std::log(sum);
+  step.predicted = without_noise;
+  for (std::size_t m = 0; m < motion.size(); ++m) {
+    step.mode_weight[m] /= sum;
+    step.predicted.covariance += step.mode_weight[m] * Q[m];
+  }
+  step.state = absorb(step.predicted, step.update.sightings);
+  return step;
+}
+
+}  // namespace alidade

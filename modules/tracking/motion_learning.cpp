@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracking/motion_learning.h"
+
+#include <limits>
+
+#include "tracking/state_smoother.h"
+
+namespace alidade {
+namespace {
+
+Vector6d accelerations(const CameraState& state) {
+  Vector6d a;
+  a << state.a_world, state.alpha_camera;
+  return a;
+}
+
+}  // namespace
+
+MotionProcess learned(const MotionProcess& motion, std::span<const std::vector<FilterStep>> recordings) {
+  std::vector<Matrix6d> jerk(motion.size(), Matrix6d::Zero()), jump = jerk;
+  std::vector<double> weight(motion.size(), 0.0);
+  int count = 0;
+  for (const std::vector<FilterStep>& steps : recordings) {
+    const std::vector<SmoothedState> smoothed = smooth(steps);
+    for (std::size_t i = 0; i + 1 < smoothed.size(); ++i) {
+      const double dt = to_seconds(smoothed[i + 1].state.time - smoothed[i].state.time);
+      if (!(dt > 0)) continue;
+      const Vector6d change = accelerations(smoothed[i + 1].state) - accelerations(smoothed[i].state);
+      const Matrix6d shared = smoothed[i].with_next.bottomRightCorner<6, 6>();
+      const Matrix6d P = smoothed[i].state.covariance.bottomRightCorner<6, 6>() +
+                         smoothed[i + 1].state.covariance.bottomRightCorner<6, 6>() - shared - shared.transpose();
+      for (std::size_t m = 0; m < motion.size(); ++m) {
+        const double probability = steps[i + 1].mode_weight[m];
+        weight[m] += probability;
+        jump[m] += probability * (change * change.transpose() + P);
+        jerk[m] += probability * (change * change.transpose() + P) / (dt * dt);
+      }
+      ++count;
+    }
+  }
+  MotionProcess better = motion;
+  if (count < 10) return better;
+  // A tenth of an observation of each mode beforehand: none ever becomes impossible, or exact.
+  constexpr double kBefore = 0.1;
+  for (std::size_t m = 0; m < motion.size(); ++m) {
+    const auto blended = [&](const Matrix6d& before, const Matrix6d& sum) {
+      return before.isZero(0.0) ? before : Matrix6d((kBefore * before + sum) / (kBefore + weight[m]));
+    };
+    better[m].noise.jerk = blended(motion[m].noise.jerk, jerk[m]);
+    better[m].noise.jump = blended(motion[m].noise.jump, jump[m]);
+    better[m].weight = (weight[m] + kBefore) / (count + kBefore * static_cast<double>(motion.size()));
+  }
+  return better;
+}
+
+MotionProcess learn_motion(MotionProcess motion, int most_steps,
+                           const std::function<std::vector<std::vector<FilterStep>>(const MotionProcess&)>& filter) {
+  constexpr double kLeastGain = 2.0;
+  constexpr int kPatience = 2;
+  MotionProcess best = motion;
+  double reached = -std::numeric_limits<double>::infinity();
+  for (int step = 0, without_gain = 0; step < most_steps && without_gain < kPatience; ++step) {
+    const std::vector<std::vector<FilterStep>> recordings = filter(motion);
+    double evidence = 0.0;
+    for (const auto& steps : recordings) {
+      for (const FilterStep& s : steps) evidence += s.log_evidence;
+    }
+    without_gain = evidence - reached < kLeastGain ? without_gain + 1 : 0;
+    if (evidence > reached) {
+      reached = evidence;
+      best = motion;
+    }
+    motion = learned(motion, recordings);
+  }
+  return best;
+}
+
+}  // namespace alidade

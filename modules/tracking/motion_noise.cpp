@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracking/motion_noise.h"
+
+namespace alidade {
+
+Matrix6d isotropic_noise(double linear, double angular) {
+  Vector6d variances;
+  variances << Eigen::Vector3d::Constant(linear * linear), Eigen::Vector3d::Constant(angular * angular);
+  return variances.asDiagonal();
+}
+
+MotionNoise mean_noise(const MotionProcess& motion, std::span<const double> weights) {
+  MotionNoise mean;
+  for (std::size_t m = 0; m < motion.size(); ++m) {
+    mean.acceleration += weights[m] * motion[m].noise.acceleration;
+    mean.jerk += weights[m] * motion[m].noise.jerk;
+    mean.jump += weights[m] * motion[m].noise.jump;
+  }
+  return mean;
+}
+
+MotionNoise mean_noise(const MotionProcess& motion) {
+  std::vector<double> weights;
+  for (const MotionMode& mode : motion) weights.push_back(mode.weight);
+  return mean_noise(motion, weights);
+}
+
+}  // namespace alidade
