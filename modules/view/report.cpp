@@ -106,6 +106,20 @@ std::string table(const std::vector<ReportRow>& rows) {
   return html + "</table>\n";
 }
 
+std::string table(const ReportTable& t) {
+  std::string html = "<table>\n<caption>" + escaped(t.title) + "</caption>\n<tr>";
+  for (const auto& column : t.columns) html += "<th>" + escaped(column) + "</th>";
+  html += "</tr>\n";
+  for (const auto& row : t.rows) {
+    html += "<tr>";
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      html += (i == 0 ? "<th>" : "<td class=\"value\">") + escaped(row[i]) + (i == 0 ? "</th>" : "</td>");
+    }
+    html += "</tr>\n";
+  }
+  return html + "</table>\n";
+}
+
 std::string figure(const ReportFigure& f) {
   if (f.image.empty() || (f.image.type() != CV_8UC1 && f.image.type() != CV_8UC3)) {
     throw std::invalid_argument("render_html: figure '" + f.caption + "' must be CV_8UC1 or CV_8UC3 and not empty");
@@ -123,6 +137,7 @@ std::string section(const ReportSection& s) {
   std::string html = s.title.empty() ? std::string() : "<h2>" + escaped(s.title) + "</h2>\n";
   for (const auto& paragraph : s.paragraphs) html += "<p>" + escaped(paragraph) + "</p>\n";
   html += table(s.rows);
+  for (const auto& t : s.tables) html += table(t);
   for (const auto& f : s.figures) html += figure(f);
   return html;
 }

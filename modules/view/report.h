@@ -29,6 +29,13 @@ struct ReportFigure {
   FigureFormat format = FigureFormat::Png;
 };
 
+/// A table of many columns; cells are printed as they stand, the first column names the row.
+struct ReportTable {
+  std::string title;
+  std::vector<std::string> columns;
+  std::vector<std::vector<std::string>> rows;
+};
+
 /// A file that lies beside the report and that it links to.
 struct ReportLink {
   std::string file;  ///< path relative to the report
@@ -40,6 +47,7 @@ struct ReportSection {
   std::vector<std::string> paragraphs;
   std::vector<ReportRow> rows;
   std::vector<ReportFigure> figures;
+  std::vector<ReportTable> tables{};
 };
 
 /// What a run leaves for its reader: one page without scripts or anything fetched, to open in a browser or to mail.
