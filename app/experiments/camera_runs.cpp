@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/experiments/camera_runs.h"
+
+#include <algorithm>
+#include <limits>
+
+#include <Eigen/LU>
+
+#include "reconstruction/map_point.h"
+#include "tracking/map_offset.h"
+#include "tracking/motion_learning.h"
+#include "tracking/paper_filter.h"
+#include "tracking/state_smoother.h"
+
+namespace alidade {
+namespace {
+
+constexpr double kFrameS = 1.0 / 30.0;
+constexpr std::size_t kFirst = 2;  // the frame that the estimators begin with
+
+struct Pace {
+  double v = 0.0, omega = 0.0;  // m/s, rad/s
+};
+
+Pace pace_of(const Trajectory& truth) {
+  const Vector6d motion = difference(truth[0].T_world_camera, truth[1].T_world_camera);
+  return {motion.head<3>().norm() / kFrameS, motion.tail<3>().norm() / kFrameS};
+}
+
+std::vector<PointObservation> with_sigma(std::vector<PointObservation> observations, double sigma_px) {
+  for (PointObservation& o : observations) o.sigma_px = sigma_px;
+  return observations;
+}
+
+StampedPose stamped(const CameraState& state) {
+  return {state.time, state.T_world_camera, Matrix6d(state.covariance.topLeftCorner<6, 6>())};
+}
+
+// The paper's model has none.
+void forget_accelerations(CameraState& state) {
+  state.covariance.bottomRows<6>().setZero();
+  state.covariance.rightCols<6>().setZero();
+}
+
+// log p(z) of the paper's filter over a run, its sightings taken as Gaussian about the prediction (eqs. 8-13).
+double paper_log_evidence(const Camera& camera, const CameraRun& run, const MotionNoise& noise, double sigma_px) {
+  CameraState state = state_after_two(run.truth);
+  forget_accelerations(state);
+  double sum = 0.0;
+  for (std::size_t k = kFirst; k < run.truth.size(); ++k) {
+    const CameraState predicted = predict(state, run.truth[k].time, noise);
+    const std::vector<PointObservation> observations = with_sigma(run.sightings[k], sigma_px);
+    PosePrior prior{predicted.T_world_camera, predicted.covariance.topLeftCorner<6, 6>().inverse()};
+    PoseUpdateOptions options;
+    options.map_uncertainty = MapUncertainty::Ignored;
+    const auto update = update_pose(camera, prior, observations, options);
+    if (!update) return -std::numeric_limits<double>::infinity();
+    sum += log_evidence(predicted, update->sightings);
+    state = update_paper_filter(camera, predicted, observations);
+    if (!state.covariance.allFinite()) return -std::numeric_limits<double>::infinity();
+  }
+  return sum;
+}
+
+}  // namespace
+
+CameraRun simulate_run(const CameraScene& scene, unsigned number) {
+  std::mt19937_64 random(number);
+  CameraRun run;
+  for (const Eigen::Isometry3d& T : orbit_poses(scene.path, scene.frames)) {
+    const auto frame = static_cast<double>(run.truth.size());
+    run.truth.push_back({Timestamp(from_seconds(frame * kFrameS)), T, std::nullopt});
+    auto sightings = sighted(scene.camera, T, scene.points, scene.sigma_px, random);
+    run.sightings.push_back(with_outliers(scene.camera, std::move(sightings), scene.outliers, random));
+  }
+  return run;
+}
+
+std::vector<CameraRun> simulate_runs(const CameraScene& scene, unsigned first, int count) {
+  std::vector<CameraRun> runs;
+  for (int i = 0; i < count; ++i) runs.push_back(simulate_run(scene, first + static_cast<unsigned>(i)));
+  return runs;
+}
+
+CameraState state_after_two(const Trajectory& truth) {
+  const Pace pace = pace_of(truth);
+  const Vector6d motion = difference(truth[0].T_world_camera, truth[1].T_world_camera);
+  CameraState state = resting_state(truth[1].time, truth[1].T_world_camera, 1e-12 * Matrix6d::Identity(), 0.0, 0.0);
+  state.v_world = (truth[1].T_world_camera.translation() - truth[0].T_world_camera.translation()) / kFrameS;
+  state.omega_camera = motion.tail<3>() / kFrameS;
+  // The camera may just have started: v = Δp / Δt + a Δt / 2 with an acceleration of up to v / Δt.
+  const Matrix6d A = isotropic_noise(pace.v / kFrameS, pace.omega / kFrameS);
+  state.covariance.block<6, 6>(12, 12) = A;
+  state.covariance.block<6, 6>(6, 12) = state.covariance.block<6, 6>(12, 6) = 0.5 * kFrameS * A;
+  state.covariance.block<6, 6>(6, 6) = 0.25 * kFrameS * kFrameS * A + isotropic_noise(0.05 * pace.v, 0.05 * pace.omega);
+  return state;
+}
+
+CameraRun with_map_of_two_views(const Camera& camera, CameraRun run, double sigma_px) {
+  const Eigen::Vector3d between =
+      0.5 * (run.truth[0].T_world_camera.translation() + run.truth[1].T_world_camera.translation());
+  MapPointOptions any;
+  any.least_angle_deg = 0.0;
+  any.gate_chi2 = std::numeric_limits<double>::infinity();
+  std::vector<std::optional<Intersection>> points;
+  for (std::size_t i = 0; i < run.sightings[0].size(); ++i) {
+    std::vector<PosedSighting> views;
+    for (std::size_t k : {0, 1}) {
+      views.push_back({run.truth[k].T_world_camera, Matrix6d::Zero(), run.sightings[k][i].pixel, sigma_px});
+    }
+    points.push_back(triangulate(camera, views, any));
+  }
+  for (std::vector<PointObservation>& sightings : run.sightings) {
+    std::vector<PointObservation> of_map;
+    for (std::size_t i = 0; i < sightings.size(); ++i) {
+      if (!points[i]) continue;
+      of_map.push_back(sightings[i]);
+      of_map.back().p_world = points[i]->p_world;
+      of_map.back().covariance_world = points[i]->covariance_world;
+      of_map.back().seen_from = between;
+    }
+    sightings = std::move(of_map);
+  }
+  return run;
+}
+
+MotionProcess guessed_motion(const Trajectory& truth) {
+  const Pace pace = pace_of(truth);
+  MotionNoise calm, manoeuvre;
+  calm.jerk = isotropic_noise(0.05 * pace.v / (kFrameS * kFrameS), 0.05 * pace.omega / (kFrameS * kFrameS));
+  manoeuvre.jump = isotropic_noise(pace.v / kFrameS, pace.omega / kFrameS);
+  return {{calm, 0.98}, {manoeuvre, 0.02}};
+}
+
+Trajectory estimate_single_frames(const Camera& camera, const CameraRun& run, PnpMethod method) {
+  Trajectory estimate;
+  StampedPose last = run.truth[kFirst - 1];
+  for (std::size_t k = kFirst; k < run.truth.size(); ++k) {
+    if (const auto T = solve_pnp(camera, run.sightings[k], method)) last.T_world_camera = *T;
+    last.time = run.truth[k].time;
+    estimate.push_back(last);
+  }
+  return estimate;
+}
+
+Trajectory estimate_by_ransac(const Camera& camera, const CameraRun& run, double sigma_px) {
+  constexpr double kGateChi2 = PoseUpdateOptions{}.gate_chi2;
+  RansacPnpOptions options;
+  options.sample_by_epnp = true;
+  options.confidence = 0.99;
+  options.threshold_px = 3.0 * sigma_px;
+  Trajectory estimate;
+  StampedPose last = run.truth[kFirst - 1];
+  for (std::size_t k = kFirst; k < run.truth.size(); ++k) {
+    auto pose = solve_pnp_ransac(camera, run.sightings[k], options);
+    for (int round = 0; pose && round < 2; ++round) {
+      const Eigen::Isometry3d T_camera_world = pose->T_world_camera.inverse();
+      std::vector<PointObservation> fitting;
+      for (const PointObservation& o : run.sightings[k]) {
+        const auto projection = project(camera, T_camera_world * o.p_world);
+        if (projection && (projection->pixel - o.pixel).squaredNorm() < kGateChi2 * sigma_px * sigma_px) {
+          fitting.push_back(o);
+        }
+      }
+      if (const auto T = solve_pnp(camera, fitting, PnpMethod::EpnpLm)) pose->T_world_camera = *T;
+    }
+    if (pose) last.T_world_camera = pose->T_world_camera;
+    last.time = run.truth[k].time;
+    estimate.push_back(last);
+  }
+  return estimate;
+}
+
+Trajectory estimate_by_paper_filter(const Camera& camera, const CameraRun& run, const MotionNoise& noise,
+                                    double sigma_px) {
+  Trajectory estimate;
+  CameraState state = state_after_two(run.truth);
+  forget_accelerations(state);
+  for (std::size_t k = kFirst; k < run.truth.size(); ++k) {
+    state =
+        update_paper_filter(camera, predict(state, run.truth[k].time, noise), with_sigma(run.sightings[k], sigma_px));
+    estimate.push_back(stamped(state));
+  }
+  return estimate;
+}
+
+std::vector<FilterStep> filter_run(const Camera& camera, const CameraRun& run, const CameraFilterOptions& options,
+                                   SharedMapError shared) {
+  std::vector<FilterStep> steps;
+  CameraState state = state_after_two(run.truth);
+  if (shared == SharedMapError::Considered) state.map_offset = rigid_offset(run.sightings[kFirst]);
+  SightingNoise noise;
+  for (std::size_t k = kFirst; k < run.truth.size(); ++k) {
+    std::vector<PointObservation> apart;
+    std::span<const PointObservation> sightings = run.sightings[k];
+    if (shared == SharedMapError::Considered) sightings = apart = apart_from(state.map_offset, run.sightings[k]);
+    auto step = filter_step(camera, state, noise, run.truth[k].time, sightings, options);
+    if (!step) {  // predicted only
+      step.emplace();
+      step->predicted = step->state = predict(state, run.truth[k].time, mean_noise(options.motion));
+      step->noise = noise;
+      step->mode_weight.assign(options.motion.size(), 0.0);
+    }
+    state = step->state;
+    noise = step->noise;
+    steps.push_back(std::move(*step));
+  }
+  return steps;
+}
+
+Trajectory causal_poses(std::span<const FilterStep> steps) {
+  Trajectory poses;
+  for (const FilterStep& step : steps) poses.push_back(stamped(step.state));
+  return poses;
+}
+
+Trajectory lagged_poses(std::span<const FilterStep> steps, int lag) {
+  Trajectory poses;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const std::size_t known = std::min(steps.size() - i, static_cast<std::size_t>(lag) + 1);
+    poses.push_back(stamped(smooth(steps.subspan(i, known)).front().state));
+  }
+  return poses;
+}
+
+Trajectory smoothed_poses(std::span<const FilterStep> steps) {
+  Trajectory poses;
+  for (const SmoothedState& s : smooth(steps)) poses.push_back(stamped(s.state));
+  return poses;
+}
+
+MotionProcess learn_motion(const Camera& camera, std::span<const CameraRun> runs, const CameraFilterOptions& options,
+                           SharedMapError shared) {
+  constexpr int kMostSteps = 100;
+  return learn_motion(options.motion, kMostSteps, [&](const MotionProcess& motion) {
+    CameraFilterOptions with = options;
+    with.motion = motion;
+    std::vector<std::vector<FilterStep>> filtered;
+    for (const CameraRun& run : runs) filtered.push_back(filter_run(camera, run, with, shared));
+    return filtered;
+  });
+}
+
+MotionNoise tune_paper_noise(const Camera& camera, std::span<const CameraRun> runs, double sigma_px) {
+  const Pace pace = pace_of(runs.front().truth);
+  MotionNoise best;
+  double most = -std::numeric_limits<double>::infinity();
+  for (double a : {0.01, 0.02, 0.04, 0.08, 0.16}) {
+    for (double alpha : {0.01, 0.02, 0.04, 0.08, 0.16}) {
+      MotionNoise noise;
+      noise.acceleration = isotropic_noise(a * pace.v / kFrameS, alpha * pace.omega / kFrameS);
+      double sum = 0.0;
+      for (const CameraRun& run : runs) sum += paper_log_evidence(camera, run, noise, sigma_px);
+      if (sum > most) {
+        most = sum;
+        best = noise;
+      }
+    }
+  }
+  return best;
+}
+
+}  // namespace alidade

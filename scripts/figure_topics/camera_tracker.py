@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: Apache-2.0
+"""camera-tracker: the paper's experiments re-created, and our filter beside its opponents, by `alidade experiment`."""
+
+import json
+
+from figure_topics.bench import ROOT, summary
+from figure_topics.figure import Fact, Failed, Figure, Section, Skipped
+
+RUNS = 100
+OURS = {"causal": "ours, causal", "lag-3": "ours, lag 3", "smoothed": "ours, smoothed"}
+NEES_WITH_MAP = "refitted, shared error considered"
+
+
+def experiment(bench, part, runs=RUNS):
+    """The summary of one part of the experiment, with the paper's bunny where it is at hand."""
+    try:
+        points = ["--points", bench.data("bunny") / "bun_zipper_res4.ply"]
+    except Skipped:
+        points = []
+    out = bench.fresh(f"camera-tracker/{part}")
+    bench.alidade("experiment", "camera", "--only", part, "--runs", runs, *points, "-o", out, "--quiet")
+    return summary(out)[part]
+
+
+def with_interval(ratio, at_most):
+    return Fact(f"{ratio['value']:.3f} ({ratio['low']:.3f}-{ratio['high']:.3f})", ratio["value"] <= at_most)
+
+
+def ratio_figure(name, at_most, goal=None):
+    """A ratio that is printed with its 95 % interval; judged by with_interval."""
+    return Figure(name, expected=f"<= {at_most}" + (f" (goal {goal})" if goal else ""))
+
+
+def in_range(value, low, high):
+    return Fact(f"{value:.3f}", low <= value <= high)
+
+
+# Position and rotation RMSE over EPnP + LM: path, estimate, bound, goal.
+ACCURACY = [("smooth", "causal", 0.88, 0.86), ("turn", "causal", 0.80, 0.77),
+            ("smooth", "lag-3", 0.52, 0.50), ("turn", "lag-3", 0.48, 0.45),
+            ("smooth", "smoothed", 0.47, 0.45), ("turn", "smoothed", 0.46, 0.42)]
+
+
+def measure_accuracy(bench):
+    paths = experiment(bench, "accuracy")
+    for path, estimate, at_most, _ in ACCURACY:
+        result = paths[path][OURS[estimate]]
+        for kind in ("position", "rotation"):
+            yield f"{path}/{estimate}/{kind}-to-epnp-lm", with_interval(result[f"{kind}_ratio"], at_most)
+    for path in ("smooth", "turn"):
+        for estimate in ("causal", "lag-3"):
+            yield (f"{path}/{estimate}/frames-not-worse-than-epnp",
+                   paths[path][OURS[estimate]]["frames_not_worse_than_epnp_percent"])
+        yield f"{path}/causal/nees-per-dof", in_range(paths[path][OURS["causal"]]["nees_per_dof"], 0.9, 1.15)
+    for method in ("EPnP", "SQPnP", "paper's filter"):
+        for path in ("smooth", "turn"):
+            name = method.lower().replace("'s", "").replace(" ", "-")
+            yield f"{path}/{name}/position-to-epnp-lm", paths[path][method]["position_ratio"]["value"]
+    yield "stop-and-go/worst-frame-to-epnp-lm", paths["stop-and-go"][OURS["causal"]]["worst_frame_ratio"]
+
+
+ACCURACY_SECTION = Section("accuracy", [
+    *(ratio_figure(f"{path}/{estimate}/{kind}-to-epnp-lm", at_most, goal)
+      for path, estimate, at_most, goal in ACCURACY for kind in ("position", "rotation")),
+    *(Figure(f"{path}/{estimate}/frames-not-worse-than-epnp", "%", at_least=99 if estimate == "causal" else 100)
+      for path in ("smooth", "turn") for estimate in ("causal", "lag-3")),
+    *(Figure(f"{path}/causal/nees-per-dof", expected="0.9 to 1.15") for path in ("smooth", "turn")),
+    *(Figure(f"{path}/{name}/position-to-epnp-lm")
+      for name in ("epnp", "sqpnp", "paper-filter") for path in ("smooth", "turn")),
+    Figure("stop-and-go/worst-frame-to-epnp-lm", at_most=1.1),
+    Figure("pictures", manual="alidade experiment camera --only accuracy -o OUT; look at OUT/report.html"),
+], measure_accuracy)
+
+
+def measure_noise(bench):
+    levels = experiment(bench, "noise")
+    noisy = [level for level in levels if level["sigma_px"] > 0]
+    yield "noise/worst-ratio-to-epnp-lm", max(level[kind]["value"] for level in noisy
+                                              for kind in ("position_ratio", "rotation_ratio"))
+    yield "noise/error-at-0-px", next(level["of_path_percent"] for level in levels if level["sigma_px"] == 0)
+
+
+NOISE = Section("noise", [
+    Figure("noise/worst-ratio-to-epnp-lm", at_most=0.97),
+    Figure("noise/error-at-0-px", "% of path", at_most=1e-6),
+], measure_noise)
+
+
+def measure_frames(bench):
+    result = experiment(bench, "frames")["220"]
+    yield "220-frames/causal/position-to-epnp-lm", with_interval(result[OURS["causal"]]["position_ratio"], 0.60)
+    yield "220-frames/lag-3/position-to-epnp-lm", with_interval(result[OURS["lag-3"]]["position_ratio"], 0.30)
+    yield "220-frames/lag-12/position-to-epnp-lm", result["ours, lag 12"]["position_ratio"]["value"]
+
+
+FRAMES = Section("frames", [
+    ratio_figure("220-frames/causal/position-to-epnp-lm", 0.60, 0.58),
+    ratio_figure("220-frames/lag-3/position-to-epnp-lm", 0.30, 0.29),
+    Figure("220-frames/lag-12/position-to-epnp-lm"),
+], measure_frames)
+
+
+def measure_uncertain_map(bench):
+    result = experiment(bench, "uncertain-map")
+    yield "uncertain-map/position-to-epnp-lm", with_interval(result[NEES_WITH_MAP]["position_ratio"], 0.17)
+    yield "uncertain-map/nees-per-dof", in_range(result[NEES_WITH_MAP]["nees_per_dof"], 0.8, 1.3)
+    yield "uncertain-map/inflation-only/position-to-epnp-lm", result["R inflated"]["position_ratio"]["value"]
+    yield "uncertain-map/inflation-only/nees-per-dof", result["R inflated"]["nees_per_dof"]
+
+
+UNCERTAIN_MAP = Section("uncertain-map", [
+    ratio_figure("uncertain-map/position-to-epnp-lm", 0.17, 0.15),
+    Figure("uncertain-map/nees-per-dof", expected="0.8 to 1.3"),
+    Figure("uncertain-map/inflation-only/position-to-epnp-lm"),
+    Figure("uncertain-map/inflation-only/nees-per-dof"),
+], measure_uncertain_map)
+
+
+def measure_outliers(bench):
+    shares = experiment(bench, "outliers")
+    for share in ("30", "50"):
+        ours = shares[share][OURS["causal"]]
+        for kind in ("position", "rotation"):
+            yield f"outliers-{share}/{kind}-to-ransac", with_interval(ours[f"{kind}_ratio"], 0.92)
+    yield "outliers-50/time-to-ransac", shares["50"]["time_ratio"]
+
+
+OUTLIERS = Section("outliers", [
+    *(ratio_figure(f"outliers-{share}/{kind}-to-ransac", 0.92, 0.90)
+      for share in (30, 50) for kind in ("position", "rotation")),
+    Figure("outliers-50/time-to-ransac", at_most=0.05, goal=0.02),
+], measure_outliers)
+
+
+def measure_speed(bench):
+    bench.run(ROOT / "scripts" / "build", "release", "alidade_benchmark")
+    run = bench.run(ROOT / "build" / "release" / "tests" / "benchmark" / "alidade_benchmark",
+                    "--benchmark_format=json", "--benchmark_repetitions=5")
+    least = {}
+    for row in json.loads(run.stdout)["benchmarks"]:
+        if row["run_type"] == "iteration":
+            least[row["run_name"]] = min(row["cpu_time"], least.get(row["run_name"], float("inf")))
+    try:
+        for name in ("EPnP", "SQPnP", "EPnP+LM"):
+            yield f"speed/step-to-{name.lower().replace('+', '-')}", least["filter_step"] / least[name]
+    except KeyError as missing:
+        raise Failed(f"the benchmark has no {missing}: {', '.join(least)}") from missing
+
+
+SPEED = Section("speed", [
+    Figure("speed/step-to-epnp", at_most=0.5, goal=0.3),
+    Figure("speed/step-to-sqpnp", at_most=1.2, goal=0.8),
+    Figure("speed/step-to-epnp-lm", at_most=0.12),
+], measure_speed)
+
+SECTIONS = [ACCURACY_SECTION, NOISE, FRAMES, UNCERTAIN_MAP, OUTLIERS, SPEED]
