@@ -24,7 +24,8 @@ struct CameraTrackerOptions {
   SiftOptions sift;
   FlowOptions flow;
   StarterOptions start;
-  PoseUpdateOptions update;
+  /// A map's points have errors in common, which refitting each by itself makes worse: they are left where they are.
+  PoseUpdateOptions update{.map_uncertainty = MapUncertainty::Inflated};
   GrowthOptions growth;
   double sigma_px = 1.0;  ///< of a feature, until the residuals have told better
   int most_tracks = 600;  ///< points followed by flow; more add time, hardly accuracy

@@ -3,6 +3,8 @@
 
 #include <limits>
 
+#include <Eigen/LU>
+
 #include "tracking/state_smoother.h"
 
 namespace alidade {
@@ -12,6 +14,11 @@ Vector6d accelerations(const CameraState& state) {
   Vector6d a;
   a << state.a_world, state.alpha_camera;
   return a;
+}
+
+// Covariance of what a step's noise changes the accelerations by.
+Matrix6d of_change(const MotionNoise& noise, double dt) {
+  return dt * dt * noise.jerk + noise.jump;
 }
 
 }  // namespace
@@ -29,11 +36,20 @@ MotionProcess learned(const MotionProcess& motion, std::span<const std::vector<F
       const Matrix6d shared = smoothed[i].with_next.bottomRightCorner<6, 6>();
       const Matrix6d P = smoothed[i].state.covariance.bottomRightCorner<6, 6>() +
                          smoothed[i + 1].state.covariance.bottomRightCorner<6, 6>() - shared - shared.transpose();
+      // What all of the recording says of the change but for the step's own noise, which was taken as a mean of the
+      // modes': each mode's belief of the change is that with its own noise.
+      const Matrix6d information = P.inverse();
+      const Matrix6d of_others = information - of_change(mean_noise(motion, steps[i + 1].mode_weight), dt).inverse();
       for (std::size_t m = 0; m < motion.size(); ++m) {
         const double probability = steps[i + 1].mode_weight[m];
         weight[m] += probability;
-        jump[m] += probability * (change * change.transpose() + P);
-        jerk[m] += probability * (change * change.transpose() + P) / (dt * dt);
+        const Matrix6d Q = of_change(motion[m].noise, dt);
+        if (Q.isZero(0.0)) continue;
+        const Matrix6d P_mode = (of_others + Q.inverse()).inverse();
+        const Vector6d change_mode = P_mode * information * change;
+        const Matrix6d square = probability * (change_mode * change_mode.transpose() + P_mode);
+        jump[m] += square;
+        jerk[m] += square / (dt * dt);
       }
       ++count;
     }

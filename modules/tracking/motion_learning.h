@@ -11,8 +11,7 @@ namespace alidade {
 
 /// The motion process under which recordings, filtered with `motion`, are more probable: one step of expectation and
 /// maximisation of the innovation likelihood, for the modes' weights and what each has of jerk or jump (of one of them,
-/// not of both). No truth is needed. A step's moments are not told apart by mode, so that a calm mode beside a wild one
-/// comes out too strong. Returned as it is where there are fewer than ten steps.
+/// not of both). No truth is needed. Returned as it is where there are fewer than ten steps.
 /// Source: Shumway and Stoffer 1982.
 MotionProcess learned(const MotionProcess& motion, std::span<const std::vector<FilterStep>> recordings);
 
