@@ -126,10 +126,11 @@ CameraRun with_map_of_two_views(const Camera& camera, CameraRun run, double sigm
 
 MotionProcess guessed_motion(const Trajectory& truth) {
   const Pace pace = pace_of(truth);
-  MotionNoise calm, manoeuvre;
+  MotionNoise calm, manoeuvre, jolt;
   calm.jerk = isotropic_noise(0.05 * pace.v / (kFrameS * kFrameS), 0.05 * pace.omega / (kFrameS * kFrameS));
   manoeuvre.jump = isotropic_noise(pace.v / kFrameS, pace.omega / kFrameS);
-  return {{calm, 0.98}, {manoeuvre, 0.02}};
+  jolt.jump = 64.0 * manoeuvre.jump;  // the camera may just have begun to move
+  return {{calm, 0.94}, {manoeuvre, 0.05}, {jolt, 0.01}};
 }
 
 Trajectory estimate_single_frames(const Camera& camera, const CameraRun& run, PnpMethod method) {

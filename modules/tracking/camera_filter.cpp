@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <Eigen/LU>
 
@@ -17,6 +18,14 @@ constexpr double kMostDegreesOfFreedom = 1e5;  // the noise may change in the lo
 // Whether residuals with this χ² per degree of freedom can come from noise as strong as was assumed.
 bool is_plausible(double chi2_per_dof, double dof) {
   return std::abs(chi2_per_dof - 1.0) < std::max(0.1, 4.0 * std::sqrt(2.0 / dof));
+}
+
+std::vector<double> prior_weights(const MotionProcess& motion, double caution) {
+  std::vector<double> weights;
+  for (const MotionMode& mode : motion) weights.push_back(weights.empty() ? mode.weight : caution * mode.weight);
+  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  for (double& weight : weights) weight /= sum;
+  return weights;
 }
 
 struct MeasuredPose {
@@ -74,9 +83,10 @@ std::optional<FilterStep> filter_step(const Camera& camera, const CameraState& s
   step.update = std::move(measured->update);
   step.noise = measured->noise;
   const PoseLikelihood sightings = about(without_noise.T_world_camera, step.update.sightings);
+  const std::vector<double> prior = prior_weights(motion, options.caution);
   for (std::size_t m = 0; m < motion.size(); ++m) {
     const Matrix6d P_mode = P + Q[m].topLeftCorner<6, 6>();
-    step.mode_weight.push_back(std::log(motion[m].weight) + log_evidence(P_mode, sightings));
+    step.mode_weight.push_back(std::log(prior[m]) + log_evidence(P_mode, sightings));
   }
   const double greatest = *std::max_element(step.mode_weight.begin(), step.mode_weight.end());
   double sum = 0.0;

@@ -31,7 +31,8 @@ struct FilterStep {
 
 struct CameraFilterOptions {
   PoseUpdateOptions update;
-  MotionProcess motion;              ///< at least one mode
+  MotionProcess motion;  ///< at least one mode; the first is the calm one
+  double caution = 2.0;  ///< on the odds of the other modes: to miss a manoeuvre costs more than to fear one
   bool learn_sighting_noise = true;  ///< false: SightingNoise stays as it is given
 };
 
