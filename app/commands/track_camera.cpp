@@ -13,6 +13,7 @@
 #include "io/map_file.h"
 #include "io/trajectory_file.h"
 #include "tracking/camera_tracker.h"
+#include "tracking/track_smoothing.h"
 
 namespace alidade {
 namespace {
@@ -31,6 +32,7 @@ class TrackCameraCommand : public Command {
     options_.add_choice("refine", refine_,
                         {{"none", Refine::None}, {"local", Refine::Local}, {"global", Refine::Global}},
                         "bundle adjustment: none, of the last keyframes, or also of all in the end");
+    options_.add("lag", lag_, "frames", "after it that a pose goes by as well; -1: all of the recording");
     options_.add("overlay", overlay_, "", "write overlay.mp4: the frames with what was found in them");
     tracker_.sift.most = 0;
     bind(options_, tracker_);
@@ -119,6 +121,9 @@ class TrackCameraCommand : public Command {
       record.refinement = refined.summary;
       if (const auto warning = doubt_focal_length(record.camera, refined.summary)) record.warnings.push_back(*warning);
     }
+    if (lag_ != 0 && record.has_times && !record.interrupted && tracker.options().pose == PoseMethod::Ekf) {
+      record.reports = smoothed(std::move(record.reports), {lag_});
+    }
     record.map = without_unseen_points(std::move(live.map));
     if (tracker.localises_only()) record.scale = "of the map";
     if (tracker.anchored_keyframes() == 2) {
@@ -155,6 +160,7 @@ class TrackCameraCommand : public Command {
   std::filesystem::path camera_file_;
   std::optional<double> fps_hz_;
   Refine refine_ = Refine::Global;
+  int lag_ = -1;
   bool overlay_ = true;
   CameraTrackerOptions tracker_;
   std::vector<FrameMarkers> markers_;

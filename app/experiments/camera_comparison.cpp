@@ -78,10 +78,10 @@ CameraMethod single_frames(const CameraScene& scene, std::string name, PnpMethod
 
 CameraMethod our_filter(const CameraScene& scene, CameraFilterOptions options, std::vector<int> lags) {
   return [camera = scene.camera, options = std::move(options), lags = std::move(lags)](const CameraRun& run) {
-    const std::vector<FilterStep> steps = filter_run(camera, run, options);
+    const std::vector<MotionStep> steps = filter_run(camera, run, options);
     NamedTrajectories estimates{{"ours, causal", causal_poses(steps)}};
-    for (int lag : lags) estimates.emplace_back(fmt::format("ours, lag {}", lag), lagged_poses(steps, lag));
-    estimates.emplace_back("ours, smoothed", smoothed_poses(steps));
+    for (int lag : lags) estimates.emplace_back(fmt::format("ours, lag {}", lag), smoothed_poses(steps, lag));
+    estimates.emplace_back("ours, smoothed", smoothed_poses(steps, -1));
     return estimates;
   };
 }

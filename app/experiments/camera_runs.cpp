@@ -44,7 +44,7 @@ void forget_accelerations(CameraState& state) {
 
 // log p(z) of the paper's filter over a run, its sightings taken as Gaussian about the prediction (eqs. 8-13).
 double paper_log_evidence(const Camera& camera, const CameraRun& run, const MotionNoise& noise, double sigma_px) {
-  CameraState state = state_after_two(run.truth);
+  CameraState state = moving_state(run.truth[0], run.truth[1]);
   forget_accelerations(state);
   double sum = 0.0;
   for (std::size_t k = kFirst; k < run.truth.size(); ++k) {
@@ -82,20 +82,6 @@ std::vector<CameraRun> simulate_runs(const CameraScene& scene, unsigned first, i
   return runs;
 }
 
-CameraState state_after_two(const Trajectory& truth) {
-  const Pace pace = pace_of(truth);
-  const Vector6d motion = difference(truth[0].T_world_camera, truth[1].T_world_camera);
-  CameraState state = resting_state(truth[1].time, truth[1].T_world_camera, 1e-12 * Matrix6d::Identity(), 0.0, 0.0);
-  state.v_world = (truth[1].T_world_camera.translation() - truth[0].T_world_camera.translation()) / kFrameS;
-  state.omega_camera = motion.tail<3>() / kFrameS;
-  // The camera may just have started: v = Δp / Δt + a Δt / 2 with an acceleration of up to v / Δt.
-  const Matrix6d A = isotropic_noise(pace.v / kFrameS, pace.omega / kFrameS);
-  state.covariance.block<6, 6>(12, 12) = A;
-  state.covariance.block<6, 6>(6, 12) = state.covariance.block<6, 6>(12, 6) = 0.5 * kFrameS * A;
-  state.covariance.block<6, 6>(6, 6) = 0.25 * kFrameS * kFrameS * A + isotropic_noise(0.05 * pace.v, 0.05 * pace.omega);
-  return state;
-}
-
 CameraRun with_map_of_two_views(const Camera& camera, CameraRun run, double sigma_px) {
   const Eigen::Vector3d between =
       0.5 * (run.truth[0].T_world_camera.translation() + run.truth[1].T_world_camera.translation());
@@ -126,11 +112,7 @@ CameraRun with_map_of_two_views(const Camera& camera, CameraRun run, double sigm
 
 MotionProcess guessed_motion(const Trajectory& truth) {
   const Pace pace = pace_of(truth);
-  MotionNoise calm, manoeuvre, jolt;
-  calm.jerk = isotropic_noise(0.05 * pace.v / (kFrameS * kFrameS), 0.05 * pace.omega / (kFrameS * kFrameS));
-  manoeuvre.jump = isotropic_noise(pace.v / kFrameS, pace.omega / kFrameS);
-  jolt.jump = 64.0 * manoeuvre.jump;  // the camera may just have begun to move
-  return {{calm, 0.94}, {manoeuvre, 0.05}, {jolt, 0.01}};
+  return guessed_motion(pace.v, pace.omega, kFrameS);
 }
 
 Trajectory estimate_single_frames(const Camera& camera, const CameraRun& run, PnpMethod method) {
@@ -175,7 +157,7 @@ Trajectory estimate_by_ransac(const Camera& camera, const CameraRun& run, double
 Trajectory estimate_by_paper_filter(const Camera& camera, const CameraRun& run, const MotionNoise& noise,
                                     double sigma_px) {
   Trajectory estimate;
-  CameraState state = state_after_two(run.truth);
+  CameraState state = moving_state(run.truth[0], run.truth[1]);
   forget_accelerations(state);
   for (std::size_t k = kFirst; k < run.truth.size(); ++k) {
     state =
@@ -185,10 +167,10 @@ Trajectory estimate_by_paper_filter(const Camera& camera, const CameraRun& run, 
   return estimate;
 }
 
-std::vector<FilterStep> filter_run(const Camera& camera, const CameraRun& run, const CameraFilterOptions& options,
+std::vector<MotionStep> filter_run(const Camera& camera, const CameraRun& run, const CameraFilterOptions& options,
                                    SharedMapError shared) {
-  std::vector<FilterStep> steps;
-  CameraState state = state_after_two(run.truth);
+  std::vector<MotionStep> steps;
+  CameraState state = moving_state(run.truth[0], run.truth[1]);
   if (shared == SharedMapError::Considered) state.map_offset = rigid_offset(run.sightings[kFirst]);
   SightingNoise noise;
   for (std::size_t k = kFirst; k < run.truth.size(); ++k) {
@@ -196,37 +178,22 @@ std::vector<FilterStep> filter_run(const Camera& camera, const CameraRun& run, c
     std::span<const PointObservation> sightings = run.sightings[k];
     if (shared == SharedMapError::Considered) sightings = apart = apart_from(state.map_offset, run.sightings[k]);
     auto step = filter_step(camera, state, noise, run.truth[k].time, sightings, options);
-    if (!step) {  // predicted only
-      step.emplace();
-      step->predicted = step->state = predict(state, run.truth[k].time, mean_noise(options.motion));
-      step->noise = noise;
-      step->mode_weight.assign(options.motion.size(), 0.0);
-    }
-    state = step->state;
-    noise = step->noise;
-    steps.push_back(std::move(*step));
+    if (step) noise = step->noise;
+    steps.push_back(step ? std::move(step->motion) : pass(state, run.truth[k].time, options.motion));
+    state = steps.back().state;
   }
   return steps;
 }
 
-Trajectory causal_poses(std::span<const FilterStep> steps) {
+Trajectory causal_poses(std::span<const MotionStep> steps) {
   Trajectory poses;
-  for (const FilterStep& step : steps) poses.push_back(stamped(step.state));
+  for (const MotionStep& step : steps) poses.push_back(stamped(step.state));
   return poses;
 }
 
-Trajectory lagged_poses(std::span<const FilterStep> steps, int lag) {
+Trajectory smoothed_poses(std::span<const MotionStep> steps, int lag) {
   Trajectory poses;
-  for (std::size_t i = 0; i < steps.size(); ++i) {
-    const std::size_t known = std::min(steps.size() - i, static_cast<std::size_t>(lag) + 1);
-    poses.push_back(stamped(smooth(steps.subspan(i, known)).front().state));
-  }
-  return poses;
-}
-
-Trajectory smoothed_poses(std::span<const FilterStep> steps) {
-  Trajectory poses;
-  for (const SmoothedState& s : smooth(steps)) poses.push_back(stamped(s.state));
+  for (const CameraState& state : smoothed_states(steps, lag)) poses.push_back(stamped(state));
   return poses;
 }
 
@@ -236,7 +203,7 @@ MotionProcess learn_motion(const Camera& camera, std::span<const CameraRun> runs
   return learn_motion(options.motion, kMostSteps, [&](const MotionProcess& motion) {
     CameraFilterOptions with = options;
     with.motion = motion;
-    std::vector<std::vector<FilterStep>> filtered;
+    std::vector<std::vector<MotionStep>> filtered;
     for (const CameraRun& run : runs) filtered.push_back(filter_run(camera, run, with, shared));
     return filtered;
   });

@@ -35,10 +35,6 @@ CameraRun simulate_run(const CameraScene& scene, unsigned number);
 /// `count` runs from `first` on.
 std::vector<CameraRun> simulate_runs(const CameraScene& scene, unsigned first, int count);
 
-/// The state at the second pose of the truth, with the velocity between the first two and accelerations unknown in the
-/// order of what such a motion has. Every filter starts from it, at the third frame.
-CameraState state_after_two(const Trajectory& truth);
-
 /// A run whose map is not known but triangulated from the first two frames, at their true poses; the points carry their
 /// covariance, and LM has no better ones.
 CameraRun with_map_of_two_views(const Camera& camera, CameraRun run, double sigma_px);
@@ -56,12 +52,12 @@ Trajectory estimate_by_paper_filter(const Camera& camera, const CameraRun& run, 
 
 /// What the filter makes of the error that all sightings of an uncertain map share.
 enum class SharedMapError { Ignored, Considered };
-std::vector<FilterStep> filter_run(const Camera& camera, const CameraRun& run, const CameraFilterOptions& options,
+std::vector<MotionStep> filter_run(const Camera& camera, const CameraRun& run, const CameraFilterOptions& options,
                                    SharedMapError shared = SharedMapError::Ignored);
 
-Trajectory causal_poses(std::span<const FilterStep> steps);
-Trajectory lagged_poses(std::span<const FilterStep> steps, int lag);
-Trajectory smoothed_poses(std::span<const FilterStep> steps);
+Trajectory causal_poses(std::span<const MotionStep> steps);
+/// `lag`: see smoothed_states.
+Trajectory smoothed_poses(std::span<const MotionStep> steps, int lag);
 
 /// Our filter's motion noise by innovation likelihood (expectation maximisation) on runs that are not scored.
 MotionProcess learn_motion(const Camera& camera, std::span<const CameraRun> runs, const CameraFilterOptions& options,

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include <Eigen/LU>
 
@@ -18,14 +17,6 @@ constexpr double kMostDegreesOfFreedom = 1e5;  // the noise may change in the lo
 // Whether residuals with this χ² per degree of freedom can come from noise as strong as was assumed.
 bool is_plausible(double chi2_per_dof, double dof) {
   return std::abs(chi2_per_dof - 1.0) < std::max(0.1, 4.0 * std::sqrt(2.0 / dof));
-}
-
-std::vector<double> prior_weights(const MotionProcess& motion, double caution) {
-  std::vector<double> weights;
-  for (const MotionMode& mode : motion) weights.push_back(weights.empty() ? mode.weight : caution * mode.weight);
-  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
-  for (double& weight : weights) weight /= sum;
-  return weights;
 }
 
 struct MeasuredPose {
@@ -67,38 +58,16 @@ std::optional<MeasuredPose> measure(const Camera& camera, const PosePrior& prior
 std::optional<FilterStep> filter_step(const Camera& camera, const CameraState& state, const SightingNoise& noise,
                                       Timestamp time, std::span<const PointObservation> observations,
                                       const CameraFilterOptions& options) {
-  const MotionProcess& motion = options.motion;
-  const CameraState without_noise = predict_without_noise(state, time);
-  const Matrix6d P = covariance_in_map(without_noise);
-  std::vector<Matrix18d> Q;  // of each mode
-  Matrix6d P_wide = P;       // of the pose, whichever mode it is: the gate must let through what any of them allows
-  for (const MotionMode& mode : motion) {
-    Q.push_back(noise_covariance(state, without_noise, mode.noise));
-    P_wide += Q.back().topLeftCorner<6, 6>();
+  // The gate must let through what any mode of the motion allows.
+  const CameraState widest = predict_without_noise(state, time);
+  Matrix6d P = covariance_in_map(widest);
+  for (const MotionMode& mode : options.motion) {
+    P += noise_covariance(state, widest, mode.noise).topLeftCorner<6, 6>();
   }
-  auto measured = measure(camera, {without_noise.T_world_camera, P_wide.inverse()}, noise, observations, options);
+  auto measured = measure(camera, {widest.T_world_camera, P.inverse()}, noise, observations, options);
   if (!measured) return std::nullopt;
-
-  FilterStep step;
-  step.update = std::move(measured->update);
-  step.noise = measured->noise;
-  const PoseLikelihood sightings = about(without_noise.T_world_camera, step.update.sightings);
-  const std::vector<double> prior = prior_weights(motion, options.caution);
-  for (std::size_t m = 0; m < motion.size(); ++m) {
-    const Matrix6d P_mode = P + Q[m].topLeftCorner<6, 6>();
-    step.mode_weight.push_back(std::log(prior[m]) + log_evidence(P_mode, sightings));
-  }
-  const double greatest = *std::max_element(step.mode_weight.begin(), step.mode_weight.end());
-  double sum = 0.0;
-  for (double& weight : step.mode_weight) sum += weight = std::exp(weight - greatest);
-  step.log_evidence = greatest + std::log(sum);
-  step.predicted = without_noise;
-  for (std::size_t m = 0; m < motion.size(); ++m) {
-    step.mode_weight[m] /= sum;
-    step.predicted.covariance += step.mode_weight[m] * Q[m];
-  }
-  step.state = absorb(step.predicted, step.update.sightings);
-  return step;
+  MotionStep motion = absorb(state, time, options.motion, measured->update.sightings);
+  return FilterStep{std::move(motion), std::move(measured->update), measured->noise};
 }
 
 }  // namespace alidade

@@ -230,6 +230,21 @@ CameraState resting_state(Timestamp time, const Eigen::Isometry3d& T_world_camer
   return state;
 }
 
+CameraState moving_state(const StampedPose& first, const StampedPose& second) {
+  const double dt = std::max(1e-6, to_seconds(second.time - first.time));
+  const Vector6d motion = difference(first.T_world_camera, second.T_world_camera);
+  const double v = motion.head<3>().norm() / dt, omega = motion.tail<3>().norm() / dt;
+  CameraState state = resting_state(second.time, second.T_world_camera,
+                                    second.covariance.value_or(Matrix6d::Zero()) + 1e-12 * Matrix6d::Identity(), 0, 0);
+  state.v_world = (second.T_world_camera.translation() - first.T_world_camera.translation()) / dt;
+  state.omega_camera = motion.tail<3>() / dt;
+  const Matrix6d A = isotropic_noise(v / dt, omega / dt);
+  state.covariance.block<6, 6>(12, 12) = A;
+  state.covariance.block<6, 6>(6, 12) = state.covariance.block<6, 6>(12, 6) = 0.5 * dt * A;
+  state.covariance.block<6, 6>(6, 6) = 0.25 * dt * dt * A + isotropic_noise(0.05 * v, 0.05 * omega);
+  return state;
+}
+
 Vector6d twist_of(const CameraState& state) {
   Vector6d twist;
   twist << state.T_world_camera.linear().transpose() * state.v_world, state.omega_camera;

@@ -9,6 +9,7 @@
 #include "core/time.h"
 #include "estimation/pose_update.h"
 #include "geometry/pose.h"
+#include "geometry/trajectory.h"
 #include "tracking/motion_noise.h"
 
 namespace alidade {
@@ -88,6 +89,10 @@ MotionNoise adapt(const MotionNoise& noise, const CameraState& before, const Cam
 /// acceleration.
 CameraState resting_state(Timestamp time, const Eigen::Isometry3d& T_world_camera, const Matrix6d& pose_covariance,
                           double v_sigma, double omega_sigma);
+
+/// The state at the second of two poses, at the pace between them. The camera
+/// may just have set off: v = Δp / Δt + a Δt / 2 with an acceleration of up to v / Δt, and likewise in rotation.
+CameraState moving_state(const StampedPose& first, const StampedPose& second);
 
 /// How the camera of a state moves: m/s and rad/s along its own axes.
 Vector6d twist_of(const CameraState& state);

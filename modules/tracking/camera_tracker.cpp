@@ -32,6 +32,7 @@ CameraTracker::CameraTracker(Camera camera, CameraTrackerOptions options, std::o
     : camera_(camera),
       options_((validate(options), std::move(options))),
       localises_only_(known_map.has_value()),
+      motion_(options_.pose == PoseMethod::Ekf ? MotionModel::Modes : MotionModel::ConstantVelocity),
       starter_(camera_, starter_options(options_), std::move(given_poses)),
       sigma_px_(options_.sigma_px) {
   if (!known_map) return;
@@ -46,6 +47,8 @@ Localiser CameraTracker::localiser() const {
 
 FrameReport CameraTracker::step(const ImageFrame& frame) {
   FlowImage flow = make_flow_image(frame.grey, options_.flow);
+  if (frame.time > previous_time_ && !reports_.empty()) frame_s_ = to_seconds(frame.time - previous_time_);
+  previous_time_ = frame.time;
   const bool map_is_ready = !live_.map.points.empty();
   FrameReport report = map_is_ready ? track(frame, flow) : wait(frame, flow);
   previous_ = std::move(flow);
@@ -66,8 +69,8 @@ FrameReport CameraTracker::wait(const ImageFrame& frame, const FlowImage& flow) 
   adopt(std::move(*started), frame);
   report.reason.clear();
   report.state = FrameState::Tracked;
-  report.T_world_camera = state_.T_world_camera;
-  report.covariance = state_.covariance.topLeftCorner<6, 6>();
+  report.T_world_camera = motion_.state().T_world_camera;
+  report.covariance = motion_.state().covariance.topLeftCorner<6, 6>();
   report.is_keyframe = true;
   return report;
 }
@@ -90,16 +93,7 @@ void CameraTracker::adopt(StartedMap started, const ImageFrame& frame) {
     report.T_world_camera = a.T_world_camera;
     report.is_keyframe = true;
   }
-  const double dt = std::max(1e-6, to_seconds(frame.time - a.time));
-  const Vector6d motion = difference(a.T_world_camera, b.T_world_camera);
-  const double speed = motion.head<3>().norm() / dt;
-  const double turn_rate = motion.tail<3>().norm() / dt;
-  state_ = resting_state(frame.time, b.T_world_camera, b.covariance + 1e-12 * Matrix6d::Identity(), speed,
-                         std::max(turn_rate, 0.1 / dt));
-  state_.v_world = (b.T_world_camera.translation() - a.T_world_camera.translation()) / dt;
-  state_.omega_camera = motion.tail<3>() / dt;
-  // One step's time is not known yet; the pair's is an upper bound, so these are corrected upwards by adapt().
-  noise_.acceleration = isotropic_noise(speed / dt, std::max(turn_rate, 0.05 / dt) / dt);
+  motion_.start({a.time, a.T_world_camera, {}}, {frame.time, b.T_world_camera, b.covariance}, frame_s_);
   has_pose_ = true;
   missed_ = 0;
   retrack_from_last_keyframe();
@@ -107,7 +101,7 @@ void CameraTracker::adopt(StartedMap started, const ImageFrame& frame) {
 
 FrameReport CameraTracker::track(const ImageFrame& frame, const FlowImage& flow) {
   // 1. Predict (eqs. 1-7).
-  const CameraState predicted = has_pose_ ? predict(state_, frame.time, noise_) : state_;
+  const CameraState predicted = has_pose_ ? motion_.predicted(frame.time) : motion_.state();
   // 2. Find the map's points: by flow from the previous frame, else by SIFT near where they are expected, else
   // anywhere.
   const Localiser localiser = this->localiser();
@@ -119,7 +113,7 @@ FrameReport CameraTracker::track(const ImageFrame& frame, const FlowImage& flow)
     }
   } else {
     if (has_pose_ && missed_ == 0) {
-      attempt = localiser.follow({previous_, state_.T_world_camera, tracks_}, predicted, flow);
+      attempt = localiser.follow({previous_, motion_.state().T_world_camera, tracks_}, predicted, flow);
     }
     if (!localiser.is_believable(attempt) && has_pose_) attempt = localiser.search(predicted, frame.grey);
     if (!localiser.is_believable(attempt)) {
@@ -156,20 +150,10 @@ FrameReport CameraTracker::accept(const ImageFrame& frame, const CameraState& pr
     report.is_keyframe = true;
   }
   const PoseUpdate& update = *attempt.update;
-  learn_noise(update);
-  CameraState next = absorb(predicted, update.T_world_camera, update.covariance);
-  if (continues) {
-    noise_ = adapt(noise_, state_, next, 0.1);
-  } else if (has_pose_ && missed_ == 0) {  // a jump that the motion model did not foresee: open the gate at once
-    noise_ = adapt(noise_, state_, next, 0.5);
-  } else {
-    // Found anew, its motion is unknown: a hand turns by a radian per second and crosses half the depth in one.
-    const double depth = median_range(update.T_world_camera, attempt.found);
-    next = resting_state(frame.time, update.T_world_camera, update.covariance, 0.5 * depth, 1.0);
-    noise_.acceleration = isotropic_noise(2.0 * depth, 10.0);
-  }
+  learn_sighting_noise(update);
+  move_on(frame, attempt);
   if (report.is_keyframe) {
-    next.T_world_camera = live_.map.keyframes.back().T_world_camera;
+    motion_.correct(live_.map.keyframes.back().T_world_camera);
     retrack_from_last_keyframe();
   } else {
     tracks_ = inliers_of(attempt.found, update);
@@ -183,8 +167,10 @@ FrameReport CameraTracker::accept(const ImageFrame& frame, const CameraState& pr
   report.time = frame.time;
   report.name = frame.name;
   report.state = FrameState::Tracked;
-  report.T_world_camera = next.T_world_camera;
-  report.covariance = update.covariance;
+  const CameraState& now = motion_.state();
+  report.T_world_camera = now.T_world_camera;
+  report.covariance = now.covariance.topLeftCorner<6, 6>();
+  report.likelihood = update.sightings;
   report.chi2_per_dof = update.chi2_per_dof;
   report.sigma_px = sigma_px_;
   for (std::size_t i = 0; i < attempt.found.size(); ++i) {
@@ -192,10 +178,21 @@ FrameReport CameraTracker::accept(const ImageFrame& frame, const CameraState& pr
   }
   if (continues) report.expectations = expectations(predicted, attempt.found);
   frames_since_anchor_ = anchor ? 0 : frames_since_anchor_ + 1;
-  state_ = next;
   has_pose_ = true;
   missed_ = 0;
   return report;
+}
+
+void CameraTracker::move_on(const ImageFrame& frame, const Localisation& attempt) {
+  const PoseUpdate& update = *attempt.update;
+  const StampedPose pose{frame.time, update.T_world_camera, update.covariance};
+  if (has_pose_ && attempt.used_prior) {
+    motion_.follow(frame.time, update);
+  } else if (has_pose_ && missed_ == 0) {
+    motion_.jump(pose);
+  } else {
+    motion_.find_anew(pose, median_range(update.T_world_camera, attempt.found), frame_s_);
+  }
 }
 
 std::vector<FrameExpectation> CameraTracker::expectations(const CameraState& predicted,
@@ -220,7 +217,7 @@ FrameReport CameraTracker::lose(const ImageFrame& frame, const CameraState& pred
   report.state = has_pose_ ? FrameState::Predicted : FrameState::Lost;
   report.reason = "too few map points found again (blur, darkness, or a part of the scene that the map lacks)";
   if (has_pose_) {
-    state_ = predicted;
+    motion_.pass(frame.time);
     report.T_world_camera = predicted.T_world_camera;
     report.covariance = predicted.covariance.topLeftCorner<6, 6>();
   }
@@ -273,7 +270,7 @@ void CameraTracker::retrack_from_last_keyframe() {
   T_world_keyframe_ = last.T_world_camera;
 }
 
-void CameraTracker::learn_noise(const PoseUpdate& update) {
+void CameraTracker::learn_sighting_noise(const PoseUpdate& update) {
   if (update.inlier_count < 2 * options_.least_inliers) return;
   // The gate cuts the tails, which the running mean forgives; the bounds keep a bad start from closing the gate.
   const double variance = sigma_px_ * sigma_px_ * (0.9 + 0.1 * update.chi2_per_dof);

@@ -8,6 +8,7 @@
 #include "tracking/camera_tracker_options.h"
 #include "tracking/frame.h"
 #include "tracking/live_map.h"
+#include "tracking/live_motion.h"
 #include "tracking/localiser.h"
 #include "tracking/starter.h"
 
@@ -33,7 +34,6 @@ class CameraTracker {
   bool localises_only() const { return localises_only_; }
   /// How many of the first keyframes stand where the user said (2) or merely hold the gauge (1).
   int anchored_keyframes() const { return anchored_keyframes_; }
-  const MotionNoise& motion_noise() const { return noise_; }
 
  private:
   FrameReport wait(const ImageFrame& frame, const FlowImage& flow);
@@ -44,27 +44,29 @@ class CameraTracker {
   double median_range(const Eigen::Isometry3d& T_world_camera, const std::vector<FoundPoint>& found) const;
 
   FrameReport accept(const ImageFrame& frame, const CameraState& predicted, Localisation attempt);
+  void move_on(const ImageFrame& frame, const Localisation& attempt);
   std::vector<FrameExpectation> expectations(const CameraState& predicted, const std::vector<FoundPoint>& found) const;
   FrameReport lose(const ImageFrame& frame, const CameraState& predicted);
   bool keyframe_is_due(const Localisation& attempt) const;
   void add_keyframe(const ImageFrame& frame, Localisation& attempt);
   void retrack_from_last_keyframe();
-  void learn_noise(const PoseUpdate& update);
+  void learn_sighting_noise(const PoseUpdate& update);
 
   Camera camera_;
   CameraTrackerOptions options_;
   bool localises_only_ = false;
   int anchored_keyframes_ = 1;
+  LiveMotion motion_;
   MapStarter starter_;
   LiveMap live_;
   std::vector<int> living_;  // indices of the points worth looking for
-  CameraState state_;
-  MotionNoise noise_;
   double sigma_px_ = 1.0;
   std::vector<FoundPoint> tracks_;   // points in the previous frame, to be followed
   std::size_t keyframe_tracks_ = 0;  // how many there were at the last keyframe
   Eigen::Isometry3d T_world_keyframe_ = Eigen::Isometry3d::Identity();
   FlowImage previous_;
+  Timestamp previous_time_{};
+  double frame_s_ = 1.0 / 30.0;  // from the last image to this one
   int frames_since_anchor_ = 0;  // since flow was last corrected by features
   int missed_ = 0;               // frames since the last measured one
   bool has_pose_ = false;        // false: lost, or not yet located in a known map

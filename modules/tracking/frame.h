@@ -7,6 +7,7 @@
 #include <opencv2/core.hpp>
 
 #include "core/time.h"
+#include "estimation/pose_update.h"
 #include "geometry/pose.h"
 
 namespace alidade {
@@ -50,6 +51,7 @@ struct FrameReport {
   std::string reason;  ///< why it waits, or what was lost; empty while tracked
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< meaningful while tracked or predicted
   Matrix6d covariance = Matrix6d::Zero();                            ///< of the right perturbation, m and rad
+  PoseLikelihood likelihood;  ///< what its sightings alone say of the pose; no information where it is not tracked
   double chi2_per_dof = 0;
   double sigma_px = 1;  ///< measurement noise in use
   bool is_keyframe = false;

@@ -23,11 +23,11 @@ Matrix6d of_change(const MotionNoise& noise, double dt) {
 
 }  // namespace
 
-MotionProcess learned(const MotionProcess& motion, std::span<const std::vector<FilterStep>> recordings) {
+MotionProcess learned(const MotionProcess& motion, std::span<const std::vector<MotionStep>> recordings) {
   std::vector<Matrix6d> jerk(motion.size(), Matrix6d::Zero()), jump = jerk;
   std::vector<double> weight(motion.size(), 0.0);
   int count = 0;
-  for (const std::vector<FilterStep>& steps : recordings) {
+  for (const std::vector<MotionStep>& steps : recordings) {
     const std::vector<SmoothedState> smoothed = smooth(steps);
     for (std::size_t i = 0; i + 1 < smoothed.size(); ++i) {
       const double dt = to_seconds(smoothed[i + 1].state.time - smoothed[i].state.time);
@@ -70,16 +70,16 @@ MotionProcess learned(const MotionProcess& motion, std::span<const std::vector<F
 }
 
 MotionProcess learn_motion(MotionProcess motion, int most_steps,
-                           const std::function<std::vector<std::vector<FilterStep>>(const MotionProcess&)>& filter) {
+                           const std::function<std::vector<std::vector<MotionStep>>(const MotionProcess&)>& filter) {
   constexpr double kLeastGain = 2.0;
   constexpr int kPatience = 2;
   MotionProcess best = motion;
   double reached = -std::numeric_limits<double>::infinity();
   for (int step = 0, without_gain = 0; step < most_steps && without_gain < kPatience; ++step) {
-    const std::vector<std::vector<FilterStep>> recordings = filter(motion);
+    const std::vector<std::vector<MotionStep>> recordings = filter(motion);
     double evidence = 0.0;
     for (const auto& steps : recordings) {
-      for (const FilterStep& s : steps) evidence += s.log_evidence;
+      for (const MotionStep& s : steps) evidence += s.log_evidence;
     }
     without_gain = evidence - reached < kLeastGain ? without_gain + 1 : 0;
     if (evidence > reached) {

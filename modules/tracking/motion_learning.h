@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "tracking/camera_filter.h"
+#include "tracking/motion_step.h"
 
 namespace alidade {
 
@@ -13,11 +13,11 @@ namespace alidade {
 /// maximisation of the innovation likelihood, for the modes' weights and what each has of jerk or jump (of one of them,
 /// not of both). No truth is needed. Returned as it is where there are fewer than ten steps.
 /// Source: Shumway and Stoffer 1982.
-MotionProcess learned(const MotionProcess& motion, std::span<const std::vector<FilterStep>> recordings);
+MotionProcess learned(const MotionProcess& motion, std::span<const std::vector<MotionStep>> recordings);
 
 /// The best of such steps, until two in a row gain less than 2 in log evidence (more would be learned by heart), at
 /// most `most_steps`; `filter` gives the recordings as filtered with a motion process.
 MotionProcess learn_motion(MotionProcess motion, int most_steps,
-                           const std::function<std::vector<std::vector<FilterStep>>(const MotionProcess&)>& filter);
+                           const std::function<std::vector<std::vector<MotionStep>>(const MotionProcess&)>& filter);
 
 }  // namespace alidade

@@ -9,6 +9,14 @@ Matrix6d isotropic_noise(double linear, double angular) {
   return variances.asDiagonal();
 }
 
+MotionProcess guessed_motion(double v, double omega, double dt) {
+  MotionNoise calm, manoeuvre, jolt;
+  calm.jerk = isotropic_noise(0.05 * v / (dt * dt), 0.05 * omega / (dt * dt));
+  manoeuvre.jump = isotropic_noise(v / dt, omega / dt);
+  jolt.jump = 64.0 * manoeuvre.jump;
+  return {{calm, 0.94}, {manoeuvre, 0.05}, {jolt, 0.01}};
+}
+
 MotionNoise mean_noise(const MotionProcess& motion, std::span<const double> weights) {
   MotionNoise mean;
   for (std::size_t m = 0; m < motion.size(); ++m) {

@@ -28,6 +28,10 @@ struct MotionMode {
 /// The modes of a motion: calm most of the time, a manoeuvre now and then. In every step it is one of them.
 using MotionProcess = std::vector<MotionMode>;
 
+/// A first guess, for learning to start from, where a camera moves at `v` (m/s) and `omega` (rad/s) and is looked at
+/// every `dt` seconds: calm, a manoeuvre (its pace changes within a step), and a jolt, for it may just have set off.
+MotionProcess guessed_motion(double v, double omega, double dt);
+
 /// The noise of all modes, each with its weight: its covariance is that of the mixture.
 MotionNoise mean_noise(const MotionProcess& motion, std::span<const double> weights);
 MotionNoise mean_noise(const MotionProcess& motion);

@@ -155,12 +155,13 @@ std::vector<FrameReport> relocate_frames(const Camera& camera, const PointMap& m
   std::map<int, const Keyframe*> keyframe_of_frame;
   for (const Keyframe& keyframe : map.keyframes) keyframe_of_frame[keyframe.frame] = &keyframe;
   for (FrameReport& report : reports) {
-    if (const auto found = keyframe_of_frame.find(report.index); found != keyframe_of_frame.end()) {
-      report.T_world_camera = found->second->T_world_camera;
-      report.covariance = found->second->covariance;
-      continue;
-    }
     if (report.state != FrameState::Tracked) continue;
+    const auto keyframe = keyframe_of_frame.find(report.index);
+    const bool is_keyframe = keyframe != keyframe_of_frame.end();
+    if (is_keyframe) {
+      report.T_world_camera = keyframe->second->T_world_camera;
+      report.covariance = keyframe->second->covariance;
+    }
     std::vector<PointObservation> observations;
     for (const FrameSighting& s : report.sightings) {
       if (!s.is_inlier) continue;
@@ -171,6 +172,8 @@ std::vector<FrameReport> relocate_frames(const Camera& camera, const PointMap& m
     prior.T_world_camera = report.T_world_camera;
     const auto update = update_pose(camera, prior, observations, options.update);
     if (!update) continue;
+    report.likelihood = update->sightings;
+    if (is_keyframe) continue;
     report.T_world_camera = update->T_world_camera;
     report.covariance = update->covariance;
     report.chi2_per_dof = update->chi2_per_dof;

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/state_smoother.h"
 
+#include <algorithm>
+
 #include <Eigen/Cholesky>
 
 namespace alidade {
 
-std::vector<SmoothedState> smooth(std::span<const FilterStep> steps) {
+std::vector<SmoothedState> smooth(std::span<const MotionStep> steps) {
   std::vector<SmoothedState> result(steps.size());
   if (steps.empty()) return result;
   result.back().state = steps.back().state;
@@ -26,6 +28,19 @@ std::vector<SmoothedState> smooth(std::span<const FilterStep> steps) {
     result[i].with_next = G * next.covariance;
   }
   return result;
+}
+
+std::vector<CameraState> smoothed_states(std::span<const MotionStep> steps, int lag) {
+  std::vector<CameraState> states;
+  if (lag < 0) {
+    for (SmoothedState& s : smooth(steps)) states.push_back(std::move(s.state));
+    return states;
+  }
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const std::size_t known = std::min(steps.size() - i, static_cast<std::size_t>(lag) + 1);
+    states.push_back(smooth(steps.subspan(i, known)).front().state);
+  }
+  return states;
 }
 
 }  // namespace alidade

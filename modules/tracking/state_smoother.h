@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "tracking/camera_filter.h"
+#include "tracking/motion_step.h"
 
 namespace alidade {
 
@@ -15,7 +15,10 @@ struct SmoothedState {
 };
 
 /// The states of consecutive steps given all of them, one per step: backward pass of Rauch, Tung and Striebel 1965 on
-/// the error state. The first of the last n + 1 steps is the estimate with a lag of n frames.
-std::vector<SmoothedState> smooth(std::span<const FilterStep> steps);
+/// the error state.
+std::vector<SmoothedState> smooth(std::span<const MotionStep> steps);
+
+/// The states with a lag of `lag` frames: each given the steps up to that many after it; -1: given all.
+std::vector<CameraState> smoothed_states(std::span<const MotionStep> steps, int lag);
 
 }  // namespace alidade

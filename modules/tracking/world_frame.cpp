@@ -104,6 +104,9 @@ std::vector<FrameReport> transform(const Similarity& similarity, std::vector<Fra
   for (FrameReport& report : reports) {
     report.T_world_camera = moved(similarity, report.T_world_camera);
     report.covariance = scaled(report.covariance, similarity.scale);
+    report.likelihood.T_world_camera = moved(similarity, report.likelihood.T_world_camera);
+    report.likelihood.information = scaled(report.likelihood.information, 1.0 / similarity.scale);
+    report.likelihood.gradient.head<3>() /= similarity.scale;
   }
   return reports;
 }

@@ -40,40 +40,20 @@ Timestamp time_of(std::size_t frame) {
   return Timestamp(from_seconds(static_cast<double>(frame) * kFrameS));
 }
 
-// At the second true pose, with what the first two say of the motion.
-CameraState state_after_two(const Recording& r) {
-  const Vector6d v = difference(r.truth[0], r.truth[1]) / kFrameS;
-  CameraState state = resting_state(time_of(1), r.truth[1], 1e-12 * Matrix6d::Identity(), 0.3 * v.head<3>().norm(),
-                                    0.3 * v.tail<3>().norm());
-  state.v_world = (r.truth[1].translation() - r.truth[0].translation()) / kFrameS;
-  state.omega_camera = v.tail<3>();
-  state.covariance.bottomRightCorner<6, 6>() =
-      isotropic_noise(0.1 * v.head<3>().norm() / kFrameS, 0.1 * v.tail<3>().norm() / kFrameS);
-  return state;
-}
-
-MotionProcess guessed_motion(const Recording& r) {
-  const Vector6d v = difference(r.truth[0], r.truth[1]) / kFrameS;
-  MotionNoise calm, manoeuvre;
-  calm.jerk =
-      isotropic_noise(0.05 * v.head<3>().norm() / (kFrameS * kFrameS), 0.05 * v.tail<3>().norm() / (kFrameS * kFrameS));
-  manoeuvre.jump = isotropic_noise(0.2 * v.head<3>().norm() / kFrameS, 0.2 * v.tail<3>().norm() / kFrameS);
-  return {{calm, 0.98}, {manoeuvre, 0.02}};
-}
-
 // All of a step: prediction, gate, every iteration, covariance, both noises. From the last frame on to the third again.
 void step_filter(benchmark::State& run) {
   const Recording& r = recording();
   CameraFilterOptions options;
-  options.motion = guessed_motion(r);
-  const CameraState first = state_after_two(r);
+  const Vector6d pace = difference(r.truth[0], r.truth[1]) / kFrameS;
+  options.motion = guessed_motion(pace.head<3>().norm(), pace.tail<3>().norm(), kFrameS);
+  const CameraState first = moving_state({time_of(0), r.truth[0], {}}, {time_of(1), r.truth[1], {}});
   CameraState state = first;
   SightingNoise noise;
   std::size_t frame = 2;
   for (auto _ : run) {
     auto step = filter_step(r.camera, state, noise, time_of(frame), r.sightings[frame], options);
     if (!step) return run.SkipWithError("a frame has no pose");
-    state = step->state;
+    state = step->motion.state;
     noise = step->noise;
     if (++frame == r.truth.size()) {
       frame = 2;

@@ -76,11 +76,11 @@ class JumpInVelocity : public FilterStepTest {
 
 TEST_F(JumpInVelocity, IsFollowedInTheFrameWhereItBegins) {
   const FilterStep step = step_to(truth_);
-  EXPECT_LT(step.mode_weight.front(), 1e-3);
-  EXPECT_NEAR((step.state.v_world - before_.v_world).dot(jump_) / jump_.squaredNorm(), 1.0, 0.15);
+  EXPECT_LT(step.motion.mode_weight.front(), 1e-3);
+  EXPECT_NEAR((step.motion.state.v_world - before_.v_world).dot(jump_) / jump_.squaredNorm(), 1.0, 0.15);
   const CameraState now = test::driven(truth_, simulated_.dt, Vector6d::Zero(), Vector6d::Zero());
-  const Vector6d off = difference(step.state.T_world_camera, now.T_world_camera);
-  EXPECT_LT(off.dot(step.state.covariance.topLeftCorner<6, 6>().ldlt().solve(off)), 22.5) << "6 dof, 99.9 %";
+  const Vector6d off = difference(step.motion.state.T_world_camera, now.T_world_camera);
+  EXPECT_LT(off.dot(step.motion.state.covariance.topLeftCorner<6, 6>().ldlt().solve(off)), 22.5) << "6 dof, 99.9 %";
 }
 
 // Two standard deviations of the strongest mode, fifteen of all modes' mean: no frame may be lost by it.
@@ -89,21 +89,21 @@ TEST_F(JumpInVelocity, IsFollowedHoweverSureTheSightingsAre) {
   const test::SimulatedFrame frame = simulated_.frame(simulated_.next(truth_, random_), random_);
   const auto step = filter_step(simulated_.camera, before_, {}, next_time(), frame.observations, options_);
   ASSERT_TRUE(step);
-  EXPECT_GT(step->mode_weight.back(), 0.9);
-  EXPECT_NEAR((step->state.v_world - before_.v_world).dot(jump_) / jump_.squaredNorm(), 1.0, 0.05);
+  EXPECT_GT(step->motion.mode_weight.back(), 0.9);
+  EXPECT_NEAR((step->motion.state.v_world - before_.v_world).dot(jump_) / jump_.squaredNorm(), 1.0, 0.05);
 }
 
 TEST_F(JumpInVelocity, IsMissedByNoiseOfOneStrength) {
   options_.motion = {{options_.motion.front().noise, 1.0}};
   const FilterStep step = step_to(truth_);
   const CameraState now = test::driven(truth_, simulated_.dt, Vector6d::Zero(), Vector6d::Zero());
-  const Vector6d off = difference(step.state.T_world_camera, now.T_world_camera);
-  EXPECT_GT(off.dot(step.state.covariance.topLeftCorner<6, 6>().ldlt().solve(off)), 22.5) << "6 dof, 99.9 %";
+  const Vector6d off = difference(step.motion.state.T_world_camera, now.T_world_camera);
+  EXPECT_GT(off.dot(step.motion.state.covariance.topLeftCorner<6, 6>().ldlt().solve(off)), 22.5) << "6 dof, 99.9 %";
 }
 
 TEST_F(JumpInVelocity, IsNotSeenWhereThereIsNone) {
   const FilterStep step = step_to(before_);
-  EXPECT_GT(step.mode_weight.front(), 0.95);
+  EXPECT_GT(step.motion.mode_weight.front(), 0.95);
 }
 
 // Weights by Bayes: prior weight times the density of the innovation, whose logarithm their sum has.
@@ -111,22 +111,26 @@ TEST_F(JumpInVelocity, IsWeighedByTheInnovationLikelihood) {
   truth_.v_world = before_.v_world + 0.3 * jump_;
   const FilterStep step = step_to(truth_);
   std::vector<double> density;
+  double prior_sum = 0.0;
   for (const MotionMode& mode : options_.motion) {
+    const double prior = density.empty() ? mode.weight : kCaution * mode.weight;
     const CameraState predicted = predict(before_, next_time(), mode.noise);
-    density.push_back(mode.weight * std::exp(log_evidence(predicted, step.update.sightings)));
+    density.push_back(prior * std::exp(log_evidence(predicted, step.update.sightings)));
+    prior_sum += prior;
   }
+  for (double& d : density) d /= prior_sum;
   const double sum = std::accumulate(density.begin(), density.end(), 0.0);
-  ASSERT_EQ(step.mode_weight.size(), 3u);
-  for (std::size_t m = 0; m < 3; ++m) EXPECT_NEAR(step.mode_weight[m], density[m] / sum, 1e-9) << m;
-  EXPECT_NEAR(step.log_evidence, std::log(sum), 1e-9);
+  ASSERT_EQ(step.motion.mode_weight.size(), 3u);
+  for (std::size_t m = 0; m < 3; ++m) EXPECT_NEAR(step.motion.mode_weight[m], density[m] / sum, 1e-9) << m;
+  EXPECT_NEAR(step.motion.log_evidence, std::log(sum), 1e-9);
   // In doubt, so that every part counts.
-  EXPECT_LT(step.mode_weight.front(), 0.95);
-  EXPECT_GT(step.mode_weight.front(), 0.05);
-  const CameraState predicted = predict(before_, next_time(), mean_noise(options_.motion, step.mode_weight));
-  EXPECT_LT((step.predicted.covariance - predicted.covariance).norm(), 1e-12);
-  EXPECT_LT(error_between(step.predicted, predicted).norm(), 1e-12);
+  EXPECT_LT(step.motion.mode_weight.front(), 0.95);
+  EXPECT_GT(step.motion.mode_weight.front(), 0.05);
+  const CameraState predicted = predict(before_, next_time(), mean_noise(options_.motion, step.motion.mode_weight));
+  EXPECT_LT((step.motion.predicted.covariance - predicted.covariance).norm(), 1e-12);
+  EXPECT_LT(error_between(step.motion.predicted, predicted).norm(), 1e-12);
   const CameraState absorbed = absorb(predicted, step.update.sightings);
-  EXPECT_LT(error_between(step.state, absorbed).norm(), 1e-9);
+  EXPECT_LT(error_between(step.motion.state, absorbed).norm(), 1e-9);
 }
 
 // The variance of 114 squares has a relative standard deviation of sqrt(2/114) = 0.13 after the first frame, and of
@@ -146,7 +150,7 @@ TEST_F(FilterStepTest, LearnsTheSightingsNoiseFromAnyGuess) {
         for (PointObservation& o : observations) o.sigma_px = 1.0;
         const auto step = filter_step(simulated_.camera, state, noise, frames[k].truth.time, observations, options);
         ASSERT_TRUE(step);
-        state = step->state;
+        state = step->motion.state;
         noise = step->noise;
         if (k == 0) {
           EXPECT_NEAR(noise.variance / (noise_px * noise_px), 1.0, 0.5);
@@ -178,7 +182,7 @@ TEST_F(FilterStepTest, GivesTheExactPoseOnExactSightings) {
   EXPECT_GT(difference(before_.T_world_camera, truth.T_world_camera).norm(), 0.01);
   const auto step = filter_step(simulated_.camera, before_, {}, next_time(), frame.observations, options);
   ASSERT_TRUE(step);
-  EXPECT_LT(difference(frame.truth.T_world_camera, step->state.T_world_camera).norm(), 1e-9);
+  EXPECT_LT(difference(frame.truth.T_world_camera, step->motion.state.T_world_camera).norm(), 1e-9);
 }
 
 TEST_F(FilterStepTest, IsEmptyWithTooFewSightings) {

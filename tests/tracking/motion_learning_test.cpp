@@ -29,17 +29,17 @@ class LearnMotion : public testing::Test {
     }
   }
 
-  std::vector<std::vector<FilterStep>> filtered_with(const MotionProcess& motion) {
+  std::vector<std::vector<MotionStep>> filtered_with(const MotionProcess& motion) {
     CameraFilterOptions options = test::options_as_simulated({});
     options.motion = motion;
-    std::vector<std::vector<FilterStep>> recordings;
+    std::vector<std::vector<MotionStep>> recordings;
     for (const auto& frames : recorded_) {
       recordings.push_back(test::filtered(simulated_, belief_, frames, options));
       EXPECT_EQ(recordings.back().size(), frames.size());
     }
     log_evidence_.push_back(0.0);
     for (const auto& steps : recordings) {
-      for (const FilterStep& step : steps) log_evidence_.back() += step.log_evidence;
+      for (const MotionStep& step : steps) log_evidence_.back() += step.log_evidence;
     }
     return recordings;
   }

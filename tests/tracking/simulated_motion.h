@@ -81,16 +81,16 @@ inline CameraState belief_before_points(double acceleration_sigma) {
 }
 
 /// The filter's steps over the frames, as far as it has an answer.
-inline std::vector<FilterStep> filtered(const SimulatedCamera& simulated, CameraState state,
+inline std::vector<MotionStep> filtered(const SimulatedCamera& simulated, CameraState state,
                                         const std::vector<SimulatedFrame>& frames, const CameraFilterOptions& options) {
-  std::vector<FilterStep> steps;
+  std::vector<MotionStep> steps;
   SightingNoise noise;
   for (const SimulatedFrame& frame : frames) {
     auto step = filter_step(simulated.camera, state, noise, frame.truth.time, frame.observations, options);
     if (!step) break;
-    state = step->state;
+    state = step->motion.state;
     noise = step->noise;
-    steps.push_back(std::move(*step));
+    steps.push_back(std::move(step->motion));
   }
   return steps;
 }

@@ -48,7 +48,7 @@ class SmoothLinear : public testing::Test {
     state.covariance = sigmas.cwiseAbs2().asDiagonal();
     first_ = state;
     for (int k = 0; k < kFrames; ++k) {
-      FilterStep step;
+      MotionStep step;
       step.predicted = k == 0 ? state : predict(state, state.time + from_seconds(kStep_s), noise_);
       PoseLikelihood sightings;
       sightings.T_world_camera.translation() = random_.vector(0.3);
@@ -64,7 +64,7 @@ class SmoothLinear : public testing::Test {
   const Eigen::Matrix3d R_ = test::random_covariance<3>(random_, 0.05);
   CameraState first_;
   std::vector<Eigen::Vector3d> measured_;
-  std::vector<FilterStep> steps_;
+  std::vector<MotionStep> steps_;
 };
 
 // Unknown: the first state, and the acceleration and jerk of each step; x_k = F x_{k-1} + G n_k.
@@ -131,9 +131,9 @@ TEST_F(SmoothLinear, LeavesWhatIsKnownExactly) {
   CameraState state = first_;
   state.covariance.bottomRows<6>().setZero();
   state.covariance.rightCols<6>().setZero();
-  std::vector<FilterStep> steps;
+  std::vector<MotionStep> steps;
   for (const Eigen::Vector3d& z : measured_) {
-    FilterStep step;
+    MotionStep step;
     step.predicted = predict(state, state.time + from_seconds(kStep_s), {noise_.acceleration, Matrix6d::Zero()});
     PoseLikelihood sightings;
     sightings.T_world_camera.translation() = z;

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "estimation/pose_update.h"
+#include "tracking/camera_state.h"
+#include "tracking/motion_noise.h"
+
+namespace alidade {
+
+/// One step of a filtered motion: what was expected of a frame, and what is known with it.
+struct MotionStep {
+  CameraState predicted;  ///< by the modes of the motion as the frame has weighed them
+  CameraState state;
+  std::vector<double> mode_weight;  ///< probability of each mode of the motion, given the frame
+  double log_evidence = 0.0;        ///< of the sightings, given the prediction: innovation likelihood
+};
+
+/// The odds at which a step is taken for another mode than the first, the calm one, are twice those of the motion
+/// process: to miss a manoeuvre costs more than to fear one.
+constexpr double kCaution = 2.0;
+
+/// Where the camera will be at `time`, whichever mode its motion is in: their mean, with the covariance of the mixture.
+CameraState predict(const CameraState& state, Timestamp time, const MotionProcess& motion);
+
+/// The state at `time` after the sightings of its frame. The modes of the motion are weighed by the innovation
+/// likelihood of this frame, so that a manoeuvre is followed in the frame where it begins.
+MotionStep absorb(const CameraState& state, Timestamp time, const MotionProcess& motion,
+                  const PoseLikelihood& sightings);
+
+/// The step to a frame that shows nothing.
+MotionStep pass(const CameraState& state, Timestamp time, const MotionProcess& motion);
+
+/// What the sightings of one frame of a recording say of its pose; without information where there are none.
+struct FrameLikelihood {
+  Timestamp time{};
+  PoseLikelihood sightings;
+};
+
+/// The steps from `first` through the frames of a recording, one per frame.
+std::vector<MotionStep> filter_likelihoods(const CameraState& first, std::span<const FrameLikelihood> frames,
+                                           const MotionProcess& motion);
+
+}  // namespace alidade
