@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
+#include <map>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -11,6 +11,7 @@
 #include "app/commands/verbs.h"
 #include "app/experiments/camera_experiment.h"
 #include "app/experiments/experiment_report.h"
+#include "app/experiments/recording_experiment.h"
 #include "app/result_directory.h"
 #include "io/map_file.h"
 
@@ -26,9 +27,21 @@ const std::vector<Part> kParts{{"accuracy", camera_accuracy}, {"noise", camera_n
                                {"frames", camera_frames},     {"points", camera_points},
                                {"outliers", camera_outliers}, {"uncertain-map", camera_uncertain_map}};
 
+// On the user's recordings: run where their folder is given.
+struct RecordedPart {
+  std::string name;
+  std::string flag;
+  std::string what;
+  ExperimentSection (*run)(const std::filesystem::path&, const ExperimentContext&);
+};
+
+const std::vector<RecordedPart> kRecordedParts{
+    {"known-map", "--video", "recording with depth and truth (TUM RGB-D), for known-map", camera_known_map}};
+
 std::vector<std::string> part_names() {
   std::vector<std::string> names;
   for (const Part& part : kParts) names.push_back(part.name);
+  for (const RecordedPart& part : kRecordedParts) names.push_back(part.name);
   return names;
 }
 
@@ -37,6 +50,7 @@ class ExperimentCameraCommand : public Command {
   explicit ExperimentCameraCommand(CLI::App& flags) {
     flags.add_option("--points", points_,
                      "object to move about: vertices of a PLY; else a generated one of 453 points");
+    for (const RecordedPart& part : kRecordedParts) flags.add_option(part.flag, recordings_[part.name], part.what);
     flags.add_option("--only", only_, fmt::format("parts to run: {}", fmt::join(part_names(), ", ")))
         ->check(CLI::IsMember(part_names()));
     options_.add("runs", runs_, "", "with different noise, over which errors are averaged");
@@ -46,19 +60,22 @@ class ExperimentCameraCommand : public Command {
   }
 
   ExitCode run(const RunContext& context) override {
+    for (const RecordedPart& part : kRecordedParts) require_recording(part);
     CameraScene scene;
     if (!points_.empty()) scene.points = read_object();
     ExperimentContext experiment{runs_, context.seed, context.progress, context.stop};
     ExperimentRecord record;
-    for (const Part& part : kParts) {
-      if (!only_.empty() && std::find(only_.begin(), only_.end(), part.name) == only_.end()) continue;
-      ExperimentSection section = part.run(scene, experiment);
-      if (context.stop.stop_requested()) break;  // a part that was cut short proves nothing
-      for (const ReportTable& table : section.tables) {
-        for (const std::string& line : lines_of(table)) context.tell(line);
-        context.tell("");
-      }
+    const auto take = [&](const std::string& name, const auto& run) {
+      if (!is_wanted(name) || context.stop.stop_requested()) return;
+      ExperimentSection section = run();
+      if (context.stop.stop_requested()) return;  // a part that was cut short proves nothing
+      tell(section, context);
       record.sections.push_back(std::move(section));
+    };
+    for (const Part& part : kParts) take(part.name, [&] { return part.run(scene, experiment); });
+    for (const RecordedPart& part : kRecordedParts) {
+      const std::filesystem::path& recording = recordings_[part.name];
+      if (!recording.empty()) take(part.name, [&] { return part.run(recording, experiment); });
     }
     record.object = points_.empty() ? "a generated object of 453 points" : points_.filename().string();
     record.runs = runs_;
@@ -69,6 +86,23 @@ class ExperimentCameraCommand : public Command {
   }
 
  private:
+  bool is_wanted(const std::string& name) const {
+    return only_.empty() || std::find(only_.begin(), only_.end(), name) != only_.end();
+  }
+
+  void require_recording(const RecordedPart& part) const {
+    if (only_.empty() || !is_wanted(part.name) || !recordings_.at(part.name).empty()) return;
+    throw InputError("--only " + part.name, 0, "needs a recording", fmt::format("give it with {} FOLDER", part.flag));
+  }
+
+  static void tell(const ExperimentSection& section, const RunContext& context) {
+    for (const ReportTable& table : section.tables) {
+      for (const std::string& line : lines_of(table)) context.tell(line);
+      context.tell("");
+    }
+    for (const std::string& remark : section.remarks) context.tell(remark);
+  }
+
   std::vector<Eigen::Vector3d> read_object() const {
     std::vector<Eigen::Vector3d> points;
     for (const MapPoint& p : read_map_ply(points_).points) points.push_back(p.p_world);
@@ -88,6 +122,7 @@ class ExperimentCameraCommand : public Command {
   }
 
   std::filesystem::path points_;
+  std::map<std::string, std::filesystem::path> recordings_;  // by part
   std::vector<std::string> only_;
   int runs_ = 100;
 };
@@ -97,7 +132,8 @@ class ExperimentCameraCommand : public Command {
 Verb experiment_camera_verb() {
   return {"experiment camera", "the camera tracker paper's experiments, and ours beside them",
           "alidade experiment camera -o experiment\n"
-          "alidade experiment camera --only accuracy --runs 10 --points bunny.ply -o experiment",
+          "alidade experiment camera --only accuracy --runs 10 --points bunny.ply -o experiment\n"
+          "alidade experiment camera --only known-map --video rgbd_dataset_freiburg1_rpy -o experiment",
           OutputUse::Optional, make_command<ExperimentCameraCommand>};
 }
 

@@ -4,15 +4,13 @@
 
 #include "app/camera_source.h"
 #include "app/commands/verbs.h"
+#include "app/posed_images.h"
 #include "app/track_record.h"
-#include "io/image_files.h"
 #include "io/trajectory_file.h"
 #include "tracking/posed_map.h"
 
 namespace alidade {
 namespace {
-
-constexpr std::chrono::milliseconds kLongestGap{100};  // between poses that are interpolated
 
 class MapCommand : public Command {
  public:
@@ -70,27 +68,6 @@ class MapCommand : public Command {
     if (!poses_file_.empty()) return read_trajectory(poses_file_).poses;
     if (source.dataset && !source.dataset->truth.empty()) return source.dataset->truth;
     throw InputError(source_, 0, "the poses of these images are not known", "give them with --poses");
-  }
-
-  // A frame with its pose; where the data has depth, only frames that have one.
-  std::optional<PosedImage> posed_image(const CameraSource& source, const ImageFrame& frame,
-                                        const Trajectory& poses) const {
-    const auto T = pose_at(poses, frame.time, kLongestGap);
-    if (!T) return std::nullopt;
-    PosedImage image{frame, *T, Vector6d::Zero(), {}, 1.0};
-    image.twist =
-        twist_at(poses, frame.time, std::chrono::milliseconds(15), kLongestGap).value_or(Vector6d(Vector6d::Zero()));
-    if (!source.dataset) return image;
-    const auto& frames = source.dataset->frames;
-    const bool any_depth =
-        std::any_of(frames.begin(), frames.end(), [](const DatasetFrame& f) { return f.depth.has_value(); });
-    if (!any_depth) return image;
-    const DatasetFrame& listed = frames[static_cast<std::size_t>(frame.index)];
-    if (!listed.depth) return std::nullopt;
-    image.depth = read_depth(*listed.depth);
-    image.depth_delay_s = to_seconds(listed.depth_time - listed.time);
-    image.depth_unit_m = source.dataset->depth_unit_m;
-    return image;
   }
 
   static FrameReport report_of(const PosedImage& image) {

@@ -19,12 +19,14 @@ constexpr double kFrameS = 1.0 / 30.0;
 constexpr std::size_t kFirst = 2;  // the frame that the estimators begin with
 
 struct Pace {
+  double frame_s = 0.0;
   double v = 0.0, omega = 0.0;  // m/s, rad/s
 };
 
 Pace pace_of(const Trajectory& truth) {
   const Vector6d motion = difference(truth[0].T_world_camera, truth[1].T_world_camera);
-  return {motion.head<3>().norm() / kFrameS, motion.tail<3>().norm() / kFrameS};
+  const double frame_s = to_seconds(truth[1].time - truth[0].time);
+  return {frame_s, motion.head<3>().norm() / frame_s, motion.tail<3>().norm() / frame_s};
 }
 
 std::vector<PointObservation> with_sigma(std::vector<PointObservation> observations, double sigma_px) {
@@ -112,7 +114,7 @@ CameraRun with_map_of_two_views(const Camera& camera, CameraRun run, double sigm
 
 MotionProcess guessed_motion(const Trajectory& truth) {
   const Pace pace = pace_of(truth);
-  return guessed_motion(pace.v, pace.omega, kFrameS);
+  return guessed_motion(pace.v, pace.omega, pace.frame_s);
 }
 
 Trajectory estimate_single_frames(const Camera& camera, const CameraRun& run, PnpMethod method) {
@@ -127,27 +129,10 @@ Trajectory estimate_single_frames(const Camera& camera, const CameraRun& run, Pn
 }
 
 Trajectory estimate_by_ransac(const Camera& camera, const CameraRun& run, double sigma_px) {
-  constexpr double kGateChi2 = PoseUpdateOptions{}.gate_chi2;
-  RansacPnpOptions options;
-  options.sample_by_epnp = true;
-  options.confidence = 0.99;
-  options.threshold_px = 3.0 * sigma_px;
   Trajectory estimate;
   StampedPose last = run.truth[kFirst - 1];
   for (std::size_t k = kFirst; k < run.truth.size(); ++k) {
-    auto pose = solve_pnp_ransac(camera, run.sightings[k], options);
-    for (int round = 0; pose && round < 2; ++round) {
-      const Eigen::Isometry3d T_camera_world = pose->T_world_camera.inverse();
-      std::vector<PointObservation> fitting;
-      for (const PointObservation& o : run.sightings[k]) {
-        const auto projection = project(camera, T_camera_world * o.p_world);
-        if (projection && (projection->pixel - o.pixel).squaredNorm() < kGateChi2 * sigma_px * sigma_px) {
-          fitting.push_back(o);
-        }
-      }
-      if (const auto T = solve_pnp(camera, fitting, PnpMethod::EpnpLm)) pose->T_world_camera = *T;
-    }
-    if (pose) last.T_world_camera = pose->T_world_camera;
+    if (const auto T = solve_pnp_ransac_lm(camera, run.sightings[k], sigma_px)) last.T_world_camera = *T;
     last.time = run.truth[k].time;
     estimate.push_back(last);
   }
@@ -216,7 +201,7 @@ MotionNoise tune_paper_noise(const Camera& camera, std::span<const CameraRun> ru
   for (double a : {0.01, 0.02, 0.04, 0.08, 0.16}) {
     for (double alpha : {0.01, 0.02, 0.04, 0.08, 0.16}) {
       MotionNoise noise;
-      noise.acceleration = isotropic_noise(a * pace.v / kFrameS, alpha * pace.omega / kFrameS);
+      noise.acceleration = isotropic_noise(a * pace.v / pace.frame_s, alpha * pace.omega / pace.frame_s);
       double sum = 0.0;
       for (const CameraRun& run : runs) sum += paper_log_evidence(camera, run, noise, sigma_px);
       if (sum > most) {

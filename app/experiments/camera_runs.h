@@ -44,8 +44,7 @@ MotionProcess guessed_motion(const Trajectory& truth);
 
 /// Poses of all frames from the third on. A frame without an answer keeps the pose before it.
 Trajectory estimate_single_frames(const Camera& camera, const CameraRun& run, PnpMethod method);
-/// RANSAC (EPnP, at most 1000 iterations, confidence 0.99, threshold 3 sigma_px), then twice: EPnP + LM on what fits
-/// within the same gate as our filter's.
+/// The same by solve_pnp_ransac_lm.
 Trajectory estimate_by_ransac(const Camera& camera, const CameraRun& run, double sigma_px);
 Trajectory estimate_by_paper_filter(const Camera& camera, const CameraRun& run, const MotionNoise& noise,
                                     double sigma_px);

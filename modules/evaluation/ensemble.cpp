@@ -8,6 +8,17 @@
 #include <stdexcept>
 
 namespace alidade {
+namespace {
+
+// Of blocks whose lengths differ by one at most; over the mean length, so that they pool to the mean of all squares.
+std::vector<double> block_squares(std::span<const double> errors, std::size_t blocks) {
+  std::vector<double> sums(blocks, 0.0);
+  for (std::size_t i = 0; i < errors.size(); ++i) sums[i * blocks / errors.size()] += errors[i] * errors[i];
+  for (double& sum : sums) sum *= static_cast<double>(blocks) / static_cast<double>(errors.size());
+  return sums;
+}
+
+}  // namespace
 
 double pooled_rms(std::span<const double> mean_squares) {
   if (mean_squares.empty()) return 0.0;
@@ -35,6 +46,14 @@ Ratio ratio_of_rms(std::span<const double> mean_squares, std::span<const double>
   std::sort(ratios.begin(), ratios.end());
   return {pooled_rms(mean_squares) / pooled_rms(reference), ratios[kResamples / 40],
           ratios[kResamples - kResamples / 40]};
+}
+
+Ratio ratio_of_rms_in_blocks(std::span<const double> errors, std::span<const double> reference, std::size_t block) {
+  if (errors.size() != reference.size() || reference.empty() || block == 0) {
+    throw std::invalid_argument("ratio_of_rms_in_blocks: both estimators need the same frames, and blocks of one");
+  }
+  const std::size_t blocks = std::max<std::size_t>(1, reference.size() / block);
+  return ratio_of_rms(block_squares(errors, blocks), block_squares(reference, blocks));
 }
 
 }  // namespace alidade

@@ -7,6 +7,7 @@
 #include <Eigen/Eigenvalues>
 #include <opencv2/calib3d.hpp>
 
+#include "estimation/pose_update.h"
 #include "geometry/rotation.h"
 
 namespace alidade {
@@ -96,6 +97,29 @@ std::optional<RansacPose> solve_pnp_ransac(const Camera& camera, std::span<const
   RansacPose result{*T, {}};
   for (int i : inliers) result.inliers.push_back(c.index[static_cast<std::size_t>(i)]);
   return result;
+}
+
+std::optional<Eigen::Isometry3d> solve_pnp_ransac_lm(const Camera& camera,
+                                                     std::span<const PointObservation> observations, double sigma_px) {
+  constexpr double kGateChi2 = PoseUpdateOptions{}.gate_chi2;
+  RansacPnpOptions options;
+  options.sample_by_epnp = true;
+  options.confidence = 0.99;
+  options.threshold_px = 3.0 * sigma_px;
+  auto pose = solve_pnp_ransac(camera, observations, options);
+  if (!pose) return std::nullopt;
+  for (int round = 0; round < 2; ++round) {
+    const Eigen::Isometry3d T_camera_world = pose->T_world_camera.inverse();
+    std::vector<PointObservation> fitting;
+    for (const PointObservation& o : observations) {
+      const auto projection = project(camera, T_camera_world * o.p_world);
+      if (projection && (projection->pixel - o.pixel).squaredNorm() < kGateChi2 * sigma_px * sigma_px) {
+        fitting.push_back(o);
+      }
+    }
+    if (const auto T = solve_pnp(camera, fitting, PnpMethod::EpnpLm)) pose->T_world_camera = *T;
+  }
+  return pose->T_world_camera;
 }
 
 std::optional<Matrix6d> resection_covariance(const Camera& camera, const Eigen::Isometry3d& T_world_camera,

@@ -38,6 +38,12 @@ struct RansacPnpOptions {
 std::optional<RansacPose> solve_pnp_ransac(const Camera& camera, std::span<const PointObservation> observations,
                                            const RansacPnpOptions& options = {});
 
+/// What our filter is compared with where there are outliers: RANSAC (EPnP, at most 1000 iterations, confidence 0.99,
+/// threshold 3 sigma_px), then twice EPnP + LM on all that fits within the filter's own gate. Empty where RANSAC finds
+/// no pose. Deterministic.
+std::optional<Eigen::Isometry3d> solve_pnp_ransac_lm(const Camera& camera,
+                                                     std::span<const PointObservation> observations, double sigma_px);
+
 /// Covariance of a pose from its observations alone: σ² (Σ Jᵀ R⁻¹ J)⁻¹, σ² from the residuals (at least 1).
 /// Empty where the pose is not determined.
 std::optional<Matrix6d> resection_covariance(const Camera& camera, const Eigen::Isometry3d& T_world_camera,
