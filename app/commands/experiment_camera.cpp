@@ -36,6 +36,7 @@ struct RecordedPart {
 };
 
 const std::vector<RecordedPart> kRecordedParts{
+    {"stills", "--stills", "data set of stills with truth, for stills", camera_stills},
     {"known-map", "--video", "recording with depth and truth (TUM RGB-D), for known-map", camera_known_map}};
 
 std::vector<std::string> part_names() {

@@ -3,10 +3,27 @@
 
 #include <fmt/format.h>
 
+#include "core/errors.h"
 #include "io/image_files.h"
+#include "view/renderer.h"
 #include "view/report.h"
 
 namespace alidade {
+namespace {
+
+// Empty on a machine that cannot draw.
+std::optional<cv::Mat> drawn(const ExperimentScene& scene, Report& report) {
+  const cv::Size size(1500, 1000);
+  try {
+    const Scene all = track_scene(scene.picture);
+    return render(all, frame_scene(all, {}, static_cast<double>(size.width) / size.height), size);
+  } catch (const DeviceError& error) {
+    report.warnings.push_back(fmt::format("{} is missing: {}", scene.file, error.what()));
+    return std::nullopt;
+  }
+}
+
+}  // namespace
 
 nlohmann::json summary_of(const ExperimentRecord& record) {
   nlohmann::json summary;
@@ -38,6 +55,12 @@ void write_experiment(const ExperimentRecord& record, const std::vector<std::str
       const cv::Mat image = draw_plots(figure.plots, {960, 400});
       write_image(directory.path(figure.file), image);
       shown.figures.push_back({image, figure.caption, FigureFormat::Png});
+    }
+    for (const ExperimentScene& scene : section.scenes) {
+      const auto image = drawn(scene, report);
+      if (!image) continue;
+      write_image(directory.path(scene.file), *image);
+      shown.figures.push_back({*image, scene.caption, FigureFormat::Png});
     }
     report.sections.push_back(std::move(shown));
   }

@@ -11,6 +11,7 @@
 #include "core/progress.h"
 #include "view/plot.h"
 #include "view/report.h"
+#include "view/scene.h"
 
 namespace alidade {
 
@@ -21,6 +22,13 @@ struct ExperimentFigure {
   std::vector<Plot> plots;
 };
 
+/// A picture of cameras and what they see.
+struct ExperimentScene {
+  std::string file;  ///< "stills_ours.png"
+  std::string caption;
+  TrackPicture picture;
+};
+
 /// One part of an experiment: what it shows, in words, tables, pictures and numbers.
 struct ExperimentSection {
   std::string name;   ///< "accuracy": the word of --only, and the key in summary.json
@@ -29,6 +37,7 @@ struct ExperimentSection {
   std::vector<ReportTable> tables;
   std::vector<ExperimentFigure> figures;
   nlohmann::json summary;
+  std::vector<ExperimentScene> scenes{};
 };
 
 /// What a part is given.
