@@ -2,6 +2,7 @@
 """camera-tracker: the paper's experiments re-created, and our filter beside its opponents, by `alidade experiment`."""
 
 import json
+import math
 
 from figure_topics.bench import ROOT, summary
 from figure_topics.figure import Fact, Failed, Figure, Section, Skipped
@@ -153,4 +154,62 @@ SPEED = Section("speed", [
     Figure("speed/step-to-epnp-lm", at_most=0.12),
 ], measure_speed)
 
-SECTIONS = [ACCURACY_SECTION, NOISE, FRAMES, UNCERTAIN_MAP, OUTLIERS, SPEED]
+def on_recording(bench, part, flag, data):
+    """The summary of a part of the experiment that needs a recording; Skipped without it."""
+    recording = bench.data(data)
+    out = bench.fresh(f"camera-tracker/{part}")
+    bench.alidade("experiment", "camera", "--only", part, flag, recording, "-o", out, "--quiet")
+    return summary(out)[part]
+
+
+STILLS_METHODS = {"epnp": "EPnP", "epnp-lm": "EPnP + LM", "paper-filter": "paper's filter", "ours": "ours",
+                  "ours-local-refinement": "ours, local refinement", "ours-global-refinement": "ours, global refinement"}
+
+
+def measure_stills(bench):
+    result = on_recording(bench, "stills", "--stills", "fountain")
+    for name, method in STILLS_METHODS.items():
+        yield f"stills/{name}/mean-position-error", 1e3 * result[method]["position_mean_m"]
+    yield "stills/ours/frames-not-worse-than-epnp", result["ours"]["frames_not_worse_than_epnp_percent"]
+
+
+STILLS = Section("stills", [
+    *(Figure(f"stills/{name}/mean-position-error", "mm") for name in STILLS_METHODS),
+    Figure("stills/ours/frames-not-worse-than-epnp", "%"),
+    Figure("stills/pictures", manual="alidade experiment camera --only stills --stills fountain -o OUT; "
+                                     "look at OUT/report.html"),
+], measure_stills)
+
+
+def measure_known_map(bench):
+    result = on_recording(bench, "known-map", "--video", "tum-fr1-rpy")
+    ours = result["ours, causal"]
+    yield "known-map/position-to-ransac", with_interval(ours["position_m"]["ratio"], 0.70)
+    yield "known-map/frame-to-frame-to-ransac", with_interval(ours["frame_to_frame_m"]["ratio"], 0.50)
+    lost = result["lost"]
+    yield "known-map/frames-lost-that-pnp-keeps", len(set(lost["ours, causal"]) - set(lost["RANSAC-EPnP + LM"]))
+    yield "known-map/nees-per-dof", in_range(ours["nees_per_dof"], 0.7, 1.5)
+    yield "known-map/nees-per-dof-against-an-exact-truth", ours["nees_per_dof_against_exact_truth"]
+    sigma = result["truth_sigma"]
+    yield "known-map/truth-position-sigma", Fact("{:.1f}, {:.1f}, {:.1f} mm".format(*(1e3 * s for s in sigma[:3])), True)
+    yield "known-map/truth-rotation-sigma", Fact("{:.2f}, {:.2f}, {:.2f} deg".format(*map(math.degrees, sigma[3:])),
+                                                 True)
+    yield "known-map/epnp-lm-on-our-inliers/position-to-ransac", (
+        result["EPnP + LM, our inliers"]["position_m"]["ratio"]["value"])
+    yield "known-map/paper-filter-on-our-inliers/position-to-ransac", (
+        result["paper's filter, our inliers"]["position_m"]["ratio"]["value"])
+
+
+KNOWN_MAP = Section("known-map", [
+    ratio_figure("known-map/position-to-ransac", 0.70, 0.65),
+    ratio_figure("known-map/frame-to-frame-to-ransac", 0.50, 0.45),
+    Figure("known-map/frames-lost-that-pnp-keeps", at_most=0),
+    Figure("known-map/nees-per-dof", expected="0.7 to 1.5"),
+    Figure("known-map/nees-per-dof-against-an-exact-truth"),
+    Figure("known-map/truth-position-sigma"),
+    Figure("known-map/truth-rotation-sigma"),
+    Figure("known-map/epnp-lm-on-our-inliers/position-to-ransac"),
+    Figure("known-map/paper-filter-on-our-inliers/position-to-ransac"),
+], measure_known_map)
+
+SECTIONS = [ACCURACY_SECTION, NOISE, FRAMES, UNCERTAIN_MAP, OUTLIERS, STILLS, KNOWN_MAP, SPEED]

@@ -2,6 +2,7 @@
 #include "evaluation/ensemble.h"
 
 #include <cmath>
+#include <numeric>
 #include <random>
 #include <stdexcept>
 
@@ -62,6 +63,38 @@ TEST(RatioOfRms, RefusesUnpairedRuns) {
   const std::vector<double> two{1, 2}, three{1, 2, 3};
   EXPECT_THROW(ratio_of_rms(two, three), std::invalid_argument);
   EXPECT_THROW(ratio_of_rms({}, {}), std::invalid_argument);
+}
+
+// 23 frames in blocks of 5 make 4 blocks of 5 or 6.
+TEST(RatioOfRmsInBlocks, IsThatOfAllFrames) {
+  std::vector<double> errors, reference;
+  for (int i = 0; i < 23; ++i) {
+    errors.push_back(1.0 + 0.1 * i);
+    reference.push_back(3.0 - 0.05 * i);
+  }
+  const auto sum_of_squares = [](const std::vector<double>& values) {
+    return std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+  };
+  const Ratio ratio = ratio_of_rms_in_blocks(errors, reference, 5);
+  EXPECT_NEAR(ratio.value, std::sqrt(sum_of_squares(errors) / sum_of_squares(reference)), 1e-12);
+  EXPECT_LE(ratio.low, ratio.value);
+  EXPECT_GE(ratio.high, ratio.value);
+}
+
+TEST(RatioOfRmsInBlocks, IsLessSureWhereNeighboursAreAlike) {
+  std::vector<double> errors, reference(200, 1.0);
+  for (int i = 0; i < 200; ++i) errors.push_back(i / 10 % 2 == 0 ? 1.0 : 3.0);
+  const Ratio alone = ratio_of_rms_in_blocks(errors, reference, 1);
+  const Ratio in_blocks = ratio_of_rms_in_blocks(errors, reference, 10);
+  EXPECT_DOUBLE_EQ(alone.value, in_blocks.value);
+  EXPECT_GT(in_blocks.high - in_blocks.low, 2.0 * (alone.high - alone.low));
+}
+
+TEST(RatioOfRmsInBlocks, RefusesUnpairedFramesAndEmptyBlocks) {
+  const std::vector<double> two{1, 2}, three{1, 2, 3};
+  EXPECT_THROW(ratio_of_rms_in_blocks(two, three, 1), std::invalid_argument);
+  EXPECT_THROW(ratio_of_rms_in_blocks(two, two, 0), std::invalid_argument);
+  EXPECT_THROW(ratio_of_rms_in_blocks({}, {}, 1), std::invalid_argument);
 }
 
 }  // namespace

@@ -145,5 +145,25 @@ TEST_F(Resection, HasNoCovarianceFromTooFewSightings) {
   EXPECT_FALSE(resection_covariance(camera_, truth_, observations_));
 }
 
+// What remains of the outliers after reselection would show in millimetres.
+TEST_F(Resection, RansacWithLmIsThatOfTheInliersAlone) {
+  see(100, 0.5);
+  spoil(4);
+  std::vector<PointObservation> clean;
+  for (std::size_t i = 0; i < observations_.size(); ++i) {
+    if (i % 10 >= 4) clean.push_back(observations_[i]);
+  }
+  const auto T = solve_pnp_ransac_lm(camera_, observations_, 0.5);
+  const auto T_clean = solve_pnp(camera_, clean, PnpMethod::EpnpLm);
+  ASSERT_TRUE(T && T_clean);
+  EXPECT_LT(difference(*T_clean, *T).norm(), 2e-3);
+}
+
+TEST_F(Resection, RansacWithLmIsEmptyWhereNothingAgrees) {
+  see(60, 0.5);
+  spoil(10);
+  EXPECT_FALSE(solve_pnp_ransac_lm(camera_, observations_, 0.5));
+}
+
 }  // namespace
 }  // namespace alidade
