@@ -7,6 +7,7 @@ void bind(OptionFields& fields, CameraTrackerOptions& o) {
   fields.add_choice("pose", o.pose,
                     {{"ekf", PoseMethod::Ekf},
                      {"ekf-paper", PoseMethod::EkfPaper},
+                     {"ukf", PoseMethod::Ukf},
                      {"epnp", PoseMethod::Epnp},
                      {"epnp-lm", PoseMethod::EpnpLm},
                      {"sqpnp", PoseMethod::Sqpnp}},

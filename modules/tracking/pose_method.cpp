@@ -7,6 +7,7 @@
 
 #include "reconstruction/resection.h"
 #include "tracking/paper_filter.h"
+#include "tracking/unscented_filter.h"
 
 namespace alidade {
 namespace {
@@ -38,9 +39,7 @@ std::optional<PoseUpdate> from_frame_alone(PnpMethod method, const Camera& camer
   return update;
 }
 
-std::optional<PoseUpdate> from_paper_filter(const Camera& camera, const CameraState& predicted,
-                                            std::span<const PointObservation> inliers, PoseUpdate update) {
-  const CameraState state = update_paper_filter(camera, predicted, inliers);
+std::optional<PoseUpdate> from_filter(const CameraState& state, PoseUpdate update) {
   if (!state.T_world_camera.matrix().allFinite()) return std::nullopt;
   update.T_world_camera = state.T_world_camera;
   update.covariance = state.covariance.topLeftCorner<6, 6>();
@@ -57,7 +56,9 @@ std::optional<PoseUpdate> estimate_pose(PoseMethod method, const Camera& camera,
   const std::vector<PointObservation> inliers = inliers_of(observations, *update);
   switch (method) {
     case PoseMethod::EkfPaper:
-      return from_paper_filter(camera, predicted, inliers, std::move(*update));
+      return from_filter(update_paper_filter(camera, predicted, inliers), std::move(*update));
+    case PoseMethod::Ukf:
+      return from_filter(update_unscented_filter(camera, predicted, inliers), std::move(*update));
     case PoseMethod::Epnp:
       return from_frame_alone(PnpMethod::Epnp, camera, inliers, std::move(*update));
     case PoseMethod::EpnpLm:

@@ -14,6 +14,7 @@ namespace alidade {
 enum class PoseMethod {
   Ekf,       ///< iterated error-state update with the map's covariance in the measurement noise
   EkfPaper,  ///< the paper's: one additive update of 13 numbers, R = σ²I
+  Ukf,       ///< an unscented update, R = σ²I
   Epnp,      ///< the frame alone: EPnP
   EpnpLm,    ///< EPnP, then Levenberg–Marquardt
   Sqpnp,     ///< the frame alone: SQPnP

@@ -12,8 +12,8 @@ namespace alidade {
 namespace {
 
 constexpr unsigned kSeed = 61;
-constexpr PoseMethod kMethods[] = {PoseMethod::Ekf, PoseMethod::EkfPaper, PoseMethod::Epnp, PoseMethod::EpnpLm,
-                                   PoseMethod::Sqpnp};
+constexpr PoseMethod kMethods[] = {PoseMethod::Ekf,  PoseMethod::EkfPaper, PoseMethod::Ukf,
+                                   PoseMethod::Epnp, PoseMethod::EpnpLm,   PoseMethod::Sqpnp};
 
 class EstimatePose : public testing::Test {
  protected:
@@ -37,7 +37,8 @@ TEST_F(EstimatePose, GivesThePoseOnExactSightingsByEveryMethod) {
   for (const PoseMethod method : kMethods) {
     const auto update = estimate_pose(method, camera_, predicted_, observations_, {}, true);
     ASSERT_TRUE(update) << static_cast<int>(method);
-    EXPECT_LT(difference(truth_, update->T_world_camera).norm(), 1e-4) << static_cast<int>(method);
+    const double bound = method == PoseMethod::Ukf ? 1e-3 : 1e-4;  // it looks about as far as the prediction may be off
+    EXPECT_LT(difference(truth_, update->T_world_camera).norm(), bound) << static_cast<int>(method);
     EXPECT_EQ(update->inlier_count, static_cast<int>(observations_.size()));
     const Eigen::LLT<Matrix6d> factor(update->covariance);
     EXPECT_EQ(factor.info(), Eigen::Success) << static_cast<int>(method);
