@@ -8,10 +8,12 @@ void bind(OptionFields& fields, CameraTrackerOptions& o) {
                     {{"ekf", PoseMethod::Ekf},
                      {"ekf-paper", PoseMethod::EkfPaper},
                      {"ukf", PoseMethod::Ukf},
+                     {"ekf-slam", PoseMethod::EkfSlam},
                      {"epnp", PoseMethod::Epnp},
                      {"epnp-lm", PoseMethod::EpnpLm},
                      {"sqpnp", PoseMethod::Sqpnp}},
                     "what turns a frame's points into a pose");
+  fields.add("slam_points", o.slam_points, "", "pose ekf-slam: most points in its state");
   fields.add_choice("features", o.features, {{"auto", FeatureMode::Auto}, {"sift", FeatureMode::Sift}},
                     "auto: optical flow between keyframes; sift: in every frame, matched by brute force");
   fields.add("sigma_px", o.sigma_px, "px", "measurement noise to begin with; the residuals correct it");

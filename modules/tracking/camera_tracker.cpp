@@ -145,6 +145,8 @@ FrameReport CameraTracker::accept(const ImageFrame& frame, const CameraState& pr
   FrameReport report;
   const bool anchor = keyframe_is_due(attempt);
   if (anchor) attempt = localiser().anchor_in_features(predicted, frame.grey, std::move(attempt));
+  if (!continues) slam_.reset();
+  if (options_.pose == PoseMethod::EkfSlam) attempt.update = estimate_with_map(frame.time, predicted, attempt);
   if (anchor && !localises_only_) {
     add_keyframe(frame, attempt);
     report.is_keyframe = true;
@@ -268,6 +270,22 @@ void CameraTracker::retrack_from_last_keyframe() {
   }
   keyframe_tracks_ = tracks_.size();
   T_world_keyframe_ = last.T_world_camera;
+}
+
+// The inliers are the localiser's; pose and covariance become those of the filter that has points in its state.
+PoseUpdate CameraTracker::estimate_with_map(Timestamp time, const CameraState& predicted, const Localisation& attempt) {
+  PoseUpdate update = *attempt.update;
+  if (slam_) {
+    const SlamFrame frame{time, motion_.velocity_noise(), inliers_of(attempt.found, update), sigma_px_};
+    slam_ = follow(camera_, *slam_, live_.map, living_, frame, options_.slam_points);
+  }
+  if (!slam_ || !slam_->state.camera.T_world_camera.matrix().allFinite()) {  // this frame starts it
+    slam_ = SlamTrack{slam_state(absorb(predicted, update.T_world_camera, update.covariance)), {}};
+    slam_->state.camera.time = time;
+  }
+  update.T_world_camera = slam_->state.camera.T_world_camera;
+  update.covariance = slam_->state.covariance.topLeftCorner<6, 6>();
+  return update;
 }
 
 void CameraTracker::learn_sighting_noise(const PoseUpdate& update) {

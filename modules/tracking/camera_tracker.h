@@ -10,6 +10,7 @@
 #include "tracking/live_map.h"
 #include "tracking/live_motion.h"
 #include "tracking/localiser.h"
+#include "tracking/slam_track.h"
 #include "tracking/starter.h"
 
 namespace alidade {
@@ -51,6 +52,7 @@ class CameraTracker {
   void add_keyframe(const ImageFrame& frame, Localisation& attempt);
   void retrack_from_last_keyframe();
   void learn_sighting_noise(const PoseUpdate& update);
+  PoseUpdate estimate_with_map(Timestamp time, const CameraState& predicted, const Localisation& attempt);
 
   Camera camera_;
   CameraTrackerOptions options_;
@@ -60,6 +62,7 @@ class CameraTracker {
   MapStarter starter_;
   LiveMap live_;
   std::vector<int> living_;  // indices of the points worth looking for
+  std::optional<SlamTrack> slam_;  // PoseMethod::EkfSlam's own state
   double sigma_px_ = 1.0;
   std::vector<FoundPoint> tracks_;   // points in the previous frame, to be followed
   std::size_t keyframe_tracks_ = 0;  // how many there were at the last keyframe

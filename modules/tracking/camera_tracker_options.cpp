@@ -23,6 +23,7 @@ void validate(const CameraTrackerOptions& o) {
   require(o.sigma_px > 0, "sigma_px", o.sigma_px, "> 0 px");
   require(o.sift.most >= 50, "sift.most", o.sift.most, ">= 50");
   require(o.least_inliers >= 6, "least_inliers", o.least_inliers, ">= 6");
+  require(o.slam_points >= 6, "slam_points", o.slam_points, ">= 6");
   require(o.most_tracks >= o.least_inliers, "most_tracks", o.most_tracks, ">= least_inliers");
   require(o.window >= 2, "window", o.window, ">= 2 keyframes");
   require(o.keyframe_share > 0 && o.keyframe_share <= 1, "keyframe_share", o.keyframe_share, "in (0, 1]");

@@ -19,6 +19,7 @@ enum class FeatureMode {
 
 struct CameraTrackerOptions {
   PoseMethod pose = PoseMethod::Ekf;
+  int slam_points = 100;  ///< PoseMethod::EkfSlam: most points in its state, MonoSLAM's number at 30 Hz
   FeatureMode features = FeatureMode::Auto;
   bool local_refinement = true;  ///< bundle adjustment of the last keyframes at every new one
   SiftOptions sift;

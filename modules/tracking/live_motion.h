@@ -21,6 +21,9 @@ class LiveMotion {
 
   const CameraState& state() const { return state_; }
 
+  /// Of constant velocity, as adapted to the last steps.
+  const MotionNoise& velocity_noise() const { return noise_; }
+
   /// The state expected at `time`.
   CameraState predicted(Timestamp time) const;
 

@@ -52,7 +52,7 @@ std::optional<PoseUpdate> estimate_pose(PoseMethod method, const Camera& camera,
                                         std::span<const PointObservation> observations,
                                         const PoseUpdateOptions& options, bool use_prior) {
   auto update = update_pose(camera, prior_of(predicted, use_prior), observations, options);
-  if (!update || method == PoseMethod::Ekf) return update;
+  if (!update || method == PoseMethod::Ekf || method == PoseMethod::EkfSlam) return update;
   const std::vector<PointObservation> inliers = inliers_of(observations, *update);
   switch (method) {
     case PoseMethod::EkfPaper:
@@ -66,6 +66,7 @@ std::optional<PoseUpdate> estimate_pose(PoseMethod method, const Camera& camera,
     case PoseMethod::Sqpnp:
       return from_frame_alone(PnpMethod::Sqpnp, camera, inliers, std::move(*update));
     case PoseMethod::Ekf:
+    case PoseMethod::EkfSlam:
       break;
   }
   return update;

@@ -15,6 +15,7 @@ enum class PoseMethod {
   Ekf,       ///< iterated error-state update with the map's covariance in the measurement noise
   EkfPaper,  ///< the paper's: one additive update of 13 numbers, R = σ²I
   Ukf,       ///< an unscented update, R = σ²I
+  EkfSlam,   ///< camera and map points in one state; that state is the tracker's, its inliers are Ekf's
   Epnp,      ///< the frame alone: EPnP
   EpnpLm,    ///< EPnP, then Levenberg–Marquardt
   Sqpnp,     ///< the frame alone: SQPnP

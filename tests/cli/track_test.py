@@ -40,7 +40,7 @@ class TrackCamera(ProgramTest):
         self.assertEqual(a, b)
 
     def test_every_estimator_follows(self):
-        for pose in ("ekf-paper", "ukf", "epnp", "epnp-lm", "sqpnp"):
+        for pose in ("ekf-paper", "ukf", "ekf-slam", "epnp", "epnp-lm", "sqpnp"):
             self.assert_succeeds(*self.words, "--pose", pose, "--refine", "none", "-o", pose)
             result = self.errors(pose)
             self.assertLess(result["ape_translation_m"]["rmse"], 0.05 * result["path_length_m"], pose)

@@ -12,7 +12,7 @@ namespace alidade {
 namespace {
 
 constexpr unsigned kSeed = 61;
-constexpr PoseMethod kMethods[] = {PoseMethod::Ekf,  PoseMethod::EkfPaper, PoseMethod::Ukf,
+constexpr PoseMethod kMethods[] = {PoseMethod::Ekf,  PoseMethod::EkfPaper, PoseMethod::Ukf,  PoseMethod::EkfSlam,
                                    PoseMethod::Epnp, PoseMethod::EpnpLm,   PoseMethod::Sqpnp};
 
 class EstimatePose : public testing::Test {
