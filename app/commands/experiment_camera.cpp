@@ -25,7 +25,8 @@ struct Part {
 
 const std::vector<Part> kParts{{"accuracy", camera_accuracy}, {"noise", camera_noise},
                                {"frames", camera_frames},     {"points", camera_points},
-                               {"outliers", camera_outliers}, {"uncertain-map", camera_uncertain_map}};
+                               {"outliers", camera_outliers}, {"uncertain-map", camera_uncertain_map},
+                               {"claims", camera_claims}};
 
 // On the user's recordings: run where their folder is given.
 struct RecordedPart {

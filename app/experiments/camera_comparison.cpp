@@ -24,10 +24,6 @@ const std::vector<std::string> kMethodOrder{"EPnP",           "EPnP + LM",      
                                             "paper's filter", "RANSAC-EPnP + LM", "ours, causal",
                                             "ours, lag 3",    "ours, lag 12",     "ours, smoothed"};
 
-nlohmann::json as_json(const Ratio& ratio) {
-  return {{"value", ratio.value}, {"low", ratio.low}, {"high", ratio.high}};
-}
-
 }  // namespace
 
 std::map<std::string, MethodErrors> compare(const CameraScene& scene, const ExperimentContext& context,
@@ -100,6 +96,10 @@ CameraFilterOptions learned_options(const CameraScene& scene, const ExperimentCo
 
 std::string with_interval(const Ratio& ratio) {
   return fmt::format("{:.3f} ({:.3f}-{:.3f})", ratio.value, ratio.low, ratio.high);
+}
+
+nlohmann::json as_json(const Ratio& ratio) {
+  return {{"value", ratio.value}, {"low", ratio.low}, {"high", ratio.high}};
 }
 
 std::string of_path_percent(double error_m, const CameraScene& scene) {

@@ -44,6 +44,9 @@ nlohmann::json summary_of(const std::map<std::string, MethodErrors>& errors, con
 /// "0.877 (0.861-0.893)".
 std::string with_interval(const Ratio& ratio);
 
+/// {"value", "low", "high"}.
+nlohmann::json as_json(const Ratio& ratio);
+
 /// An error as a share of the scene's path, in percent.
 std::string of_path_percent(double error_m, const CameraScene& scene);
 

@@ -30,4 +30,7 @@ ExperimentSection camera_outliers(const CameraScene& scene, const ExperimentCont
 /// A map of two adjacent views.
 ExperimentSection camera_uncertain_map(const CameraScene& scene, const ExperimentContext& context);
 
+/// What else the paper says: each claim measured and judged.
+ExperimentSection camera_claims(const CameraScene& scene, const ExperimentContext& context);
+
 }  // namespace alidade

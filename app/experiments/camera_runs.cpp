@@ -69,6 +69,7 @@ double paper_log_evidence(const Camera& camera, const CameraRun& run, const Moti
 CameraRun simulate_run(const CameraScene& scene, unsigned number) {
   std::mt19937_64 random(number);
   CameraRun run;
+  run.number = number;
   for (const Eigen::Isometry3d& T : orbit_poses(scene.path, scene.frames)) {
     const auto frame = static_cast<double>(run.truth.size());
     run.truth.push_back({Timestamp(from_seconds(frame * kFrameS)), T, std::nullopt});

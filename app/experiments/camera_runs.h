@@ -15,6 +15,7 @@ namespace alidade {
 
 /// One recording of an experiment: a camera on its path, and what it sees in each frame.
 struct CameraRun {
+  unsigned number = 0;  ///< of simulate_run
   Trajectory truth;
   std::vector<std::vector<PointObservation>> sightings;  ///< one list per pose; sigma_px 1, whatever the noise is
 };
