@@ -32,10 +32,14 @@ class TrackCameraCommand : public Command {
     options_.add_choice("refine", refine_,
                         {{"none", Refine::None}, {"local", Refine::Local}, {"global", Refine::Global}},
                         "bundle adjustment: none, of the last keyframes, or also of all in the end");
-    options_.add("lag", lag_, "frames", "after it that a pose goes by as well; -1: all of the recording");
+    options_.add("lag", lag_, "frames",
+                 "in a known map: frames after it that a pose goes by as well; -1: all of the recording");
     options_.add("overlay", overlay_, "", "write overlay.mp4: the frames with what was found in them");
     tracker_.sift.most = 0;
     bind(options_, tracker_);
+    options_.add_check([this] {
+      if (lag_ < -1) throw std::invalid_argument(fmt::format("lag must be >= -1, got {}", lag_));
+    });
     options_.add_check([this] { validate(effective_options({640, 480, 500, 500, 320, 240, {}})); });
   }
 
@@ -121,7 +125,9 @@ class TrackCameraCommand : public Command {
       record.refinement = refined.summary;
       if (const auto warning = doubt_focal_length(record.camera, refined.summary)) record.warnings.push_back(*warning);
     }
-    if (lag_ != 0 && record.has_times && !record.interrupted && tracker.options().pose == PoseMethod::Ekf) {
+    // A map that is made on the way brings its poses along, by bundle adjustment.
+    const bool filtered = tracker.localises_only() && record.has_times && tracker.options().pose == PoseMethod::Ekf;
+    if (filtered && lag_ != 0) {
       record.reports = smoothed(std::move(record.reports), {lag_});
     }
     record.map = without_unseen_points(std::move(live.map));

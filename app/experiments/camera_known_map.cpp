@@ -15,6 +15,7 @@
 #include "evaluation/absolute_error.h"
 #include "evaluation/consistency.h"
 #include "evaluation/relative_error.h"
+#include "tracking/track_smoothing.h"
 
 namespace alidade {
 namespace {
@@ -52,12 +53,11 @@ StampedPose stamped(const LocalisedFrame& frame, const Eigen::Isometry3d& T) {
   return {frame.report.time, T, std::nullopt};
 }
 
-Localised ours(const std::vector<LocalisedFrame>& frames) {
-  Localised method{kOurs, {}};
-  for (const LocalisedFrame& f : frames) {
+Localised ours(std::string name, const std::vector<FrameReport>& reports) {
+  Localised method{std::move(name), {}};
+  for (const FrameReport& r : reports) {
     method.poses.emplace_back();
-    if (f.report.state != FrameState::Tracked) continue;
-    method.poses.back() = StampedPose{f.report.time, f.report.T_world_camera, f.report.covariance};
+    if (r.state == FrameState::Tracked) method.poses.back() = StampedPose{r.time, r.T_world_camera, r.covariance};
   }
   return method;
 }
@@ -142,10 +142,6 @@ std::vector<int> lost_frames(const std::vector<LocalisedFrame>& frames, const Lo
     if (!method.poses[k]) lost.push_back(frames[k].report.index);
   }
   return lost;
-}
-
-nlohmann::json as_json(const Ratio& ratio) {
-  return {{"value", ratio.value}, {"low", ratio.low}, {"high", ratio.high}};
 }
 
 const Comparison::Errors& errors_of(const Comparison& comparison, const std::string& name) {
@@ -242,8 +238,14 @@ ExperimentSection camera_known_map(const std::filesystem::path& video, const Exp
   const std::vector<LocalisedFrame> frames = localise_video(open_depth_video(video), known, options, context);
   if (context.stop.stop_requested()) return section;
   const double sigma_px = options.tracker.sigma_px;
-  const std::vector<Localised> methods{ours(frames), by_ransac(camera, frames, sigma_px), by_lm(camera, frames),
-                                       by_paper_filter(camera, frames, sigma_px)};
+  std::vector<FrameReport> reports;
+  for (const LocalisedFrame& frame : frames) reports.push_back(frame.report);
+  const std::vector<Localised> methods{ours(kOurs, reports),
+                                       by_ransac(camera, frames, sigma_px),
+                                       by_lm(camera, frames),
+                                       by_paper_filter(camera, frames, sigma_px),
+                                       ours("ours, lag 3", smoothed(reports, {.lag = 3})),
+                                       ours("ours, smoothed", smoothed(reports))};
   const auto P_truth = truth_covariance(known.truth_residuals);
   const Comparison comparison = compare(frames, methods, P_truth.value_or(Matrix6d(Matrix6d::Zero())));
   if (comparison.frames.empty()) {

@@ -16,7 +16,7 @@ StampedPose stamped(const CameraState& state) {
 }  // namespace
 
 CameraState constant_velocity_start(const Trajectory& truth) {
-  return camera_of(slam_state(state_after_two(truth)));
+  return camera_of(slam_state(moving_state(truth[0], truth[1])));
 }
 
 Trajectory estimate_at_constant_velocity(const CameraRun& run, CameraState state, const MotionNoise& noise,

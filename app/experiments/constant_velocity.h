@@ -8,7 +8,7 @@
 
 namespace alidade {
 
-/// state_after_two() as the paper's model has it: without accelerations.
+/// moving_state() as the paper's model has it: without accelerations.
 CameraState constant_velocity_start(const Trajectory& truth);
 
 /// What a filter makes of a prediction and a frame.

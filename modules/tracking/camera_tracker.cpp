@@ -32,7 +32,6 @@ CameraTracker::CameraTracker(Camera camera, CameraTrackerOptions options, std::o
     : camera_(camera),
       options_((validate(options), std::move(options))),
       localises_only_(known_map.has_value()),
-      motion_(options_.pose == PoseMethod::Ekf ? MotionModel::Modes : MotionModel::ConstantVelocity),
       starter_(camera_, starter_options(options_), std::move(given_poses)),
       sigma_px_(options_.sigma_px) {
   if (!known_map) return;
@@ -169,7 +168,7 @@ FrameReport CameraTracker::accept(const ImageFrame& frame, const CameraState& pr
   report.time = frame.time;
   report.name = frame.name;
   report.state = FrameState::Tracked;
-  const CameraState& now = motion_.state();
+  const CameraState& now = options_.pose == PoseMethod::Ekf ? motion_.estimate() : motion_.state();
   report.T_world_camera = now.T_world_camera;
   report.covariance = now.covariance.topLeftCorner<6, 6>();
   report.likelihood = update.sightings;
@@ -187,13 +186,12 @@ FrameReport CameraTracker::accept(const ImageFrame& frame, const CameraState& pr
 
 void CameraTracker::move_on(const ImageFrame& frame, const Localisation& attempt) {
   const PoseUpdate& update = *attempt.update;
-  const StampedPose pose{frame.time, update.T_world_camera, update.covariance};
-  if (has_pose_ && attempt.used_prior) {
-    motion_.follow(frame.time, update);
-  } else if (has_pose_ && missed_ == 0) {
-    motion_.jump(pose);
+  if (has_pose_ && attempt.used_prior) return motion_.follow(frame.time, update);
+  const double depth_m = median_range(update.T_world_camera, attempt.found);
+  if (has_pose_ && missed_ == 0) {
+    motion_.jump(frame.time, update, depth_m, frame_s_);
   } else {
-    motion_.find_anew(pose, median_range(update.T_world_camera, attempt.found), frame_s_);
+    motion_.find_anew(frame.time, update, depth_m, frame_s_);
   }
 }
 
@@ -276,7 +274,7 @@ void CameraTracker::retrack_from_last_keyframe() {
 PoseUpdate CameraTracker::estimate_with_map(Timestamp time, const CameraState& predicted, const Localisation& attempt) {
   PoseUpdate update = *attempt.update;
   if (slam_) {
-    const SlamFrame frame{time, motion_.velocity_noise(), inliers_of(attempt.found, update), sigma_px_};
+    const SlamFrame frame{time, motion_.noise(), inliers_of(attempt.found, update), sigma_px_};
     slam_ = follow(camera_, *slam_, live_.map, living_, frame, options_.slam_points);
   }
   if (!slam_ || !slam_->state.camera.T_world_camera.matrix().allFinite()) {  // this frame starts it

@@ -61,7 +61,7 @@ class CameraTracker {
   LiveMotion motion_;
   MapStarter starter_;
   LiveMap live_;
-  std::vector<int> living_;  // indices of the points worth looking for
+  std::vector<int> living_;        // indices of the points worth looking for
   std::optional<SlamTrack> slam_;  // PoseMethod::EkfSlam's own state
   double sigma_px_ = 1.0;
   std::vector<FoundPoint> tracks_;   // points in the previous frame, to be followed

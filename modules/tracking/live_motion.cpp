@@ -3,86 +3,78 @@
 
 #include <algorithm>
 
-#include "tracking/motion_learning.h"
-
 namespace alidade {
 namespace {
 
-constexpr std::size_t kLearnEvery = 30;  // frames
-constexpr std::size_t kMemory = 150;
-constexpr int kLearningSteps = 4;
+constexpr std::size_t kLearnEvery = 5;  // frames: a step of it takes some milliseconds
+constexpr std::size_t kMemory = 100;
+constexpr int kLearningSteps = 2;
+
+// A hand turns by a radian per second and crosses half the depth in one.
+constexpr double kHandDepths = 0.5, kHandTurn = 1.0;
 
 }  // namespace
 
-CameraState LiveMotion::predicted(Timestamp time) const {
-  return model_ == MotionModel::Modes ? predict(state_, time, motion_) : predict(state_, time, noise_);
-}
-
 void LiveMotion::start(const StampedPose& first, const StampedPose& second, double frame_s) {
-  CameraState state = moving_state(first, second);
+  const CameraState moving = moving_state(first, second);
   const double pair_s = std::max(1e-6, to_seconds(second.time - first.time));
-  const double v = state.v_world.norm(), omega = std::max(state.omega_camera.norm(), 0.1 / pair_s);
-  if (model_ == MotionModel::ConstantVelocity) {
-    state = resting_state(second.time, second.T_world_camera, state.covariance.topLeftCorner<6, 6>(), v, omega);
-    state.v_world = (second.T_world_camera.translation() - first.T_world_camera.translation()) / pair_s;
-    state.omega_camera = difference(first.T_world_camera, second.T_world_camera).tail<3>() / pair_s;
-  }
-  // One frame's change of pace is not known yet; the pair's bounds it from above.
-  noise_.acceleration = isotropic_noise(v / pair_s, std::max(omega, 0.05 / pair_s) / pair_s);
-  motion_ = guessed_motion(v, omega, frame_s);
-  restart(state);
+  const double v = moving.v_world.norm(), omega = std::max(moving.omega_camera.norm(), 0.1 / pair_s);
+  state_ = resting_state(second.time, second.T_world_camera, moving.covariance.topLeftCorner<6, 6>(), v, omega);
+  state_.v_world = moving.v_world;
+  state_.omega_camera = moving.omega_camera;
+  // One frame's change of pace is not known yet; the pair's is an upper bound, so that adapt() corrects it.
+  noise_.acceleration = isotropic_noise(v / pair_s, std::max(moving.omega_camera.norm(), 0.05 / pair_s) / pair_s);
+  learned_ = {guessed_motion(v, omega, frame_s)};
+  restart(moving);
 }
 
 void LiveMotion::follow(Timestamp time, const PoseUpdate& pose) {
-  if (model_ == MotionModel::ConstantVelocity) {
-    const CameraState next = absorb(predict(state_, time, noise_), pose.T_world_camera, pose.covariance);
-    noise_ = adapt(noise_, state_, next, 0.1);
-    state_ = next;
-    return;
-  }
-  state_ = absorb(state_, time, motion_, pose.sightings).state;
+  const CameraState next = absorb(predicted(time), pose.T_world_camera, pose.covariance);
+  noise_ = adapt(noise_, state_, next, 0.1);
+  state_ = next;
+  if (learned_.pose.isZero(0.0)) learned_.pose = guessed_pose_noise(pose.sightings);
+  estimate_ = absorb(estimate_, time, learned_.motion, blurred(pose.sightings, learned_.pose)).state;
   recent_.push_back({time, pose.sightings});
   if (recent_.size() % kLearnEvery == 0) learn();
 }
 
-void LiveMotion::jump(const StampedPose& pose) {
-  if (model_ == MotionModel::Modes) return restart(moving_state({state_.time, state_.T_world_camera, {}}, pose));
-  const CameraState next = absorb(predict(state_, pose.time, noise_), pose.T_world_camera, *pose.covariance);
-  noise_ = adapt(noise_, state_, next, 0.5);
+void LiveMotion::jump(Timestamp time, const PoseUpdate& pose, double depth_m, double frame_s) {
+  const CameraState next = absorb(predicted(time), pose.T_world_camera, pose.covariance);
+  const MotionNoise open = adapt(noise_, state_, next, 0.5);
+  find_anew(time, pose, depth_m, frame_s);
   state_ = next;
+  noise_ = open;
 }
 
-void LiveMotion::find_anew(const StampedPose& pose, double depth_m, double frame_s) {
-  // A hand turns by a radian per second and crosses half the depth in one.
-  const double v = 0.5 * depth_m, omega = 1.0;
-  CameraState state = resting_state(pose.time, pose.T_world_camera, *pose.covariance, v, omega);
+void LiveMotion::find_anew(Timestamp time, const PoseUpdate& pose, double depth_m, double frame_s) {
+  const double v = kHandDepths * depth_m;
+  state_ = resting_state(time, pose.T_world_camera, pose.covariance, v, kHandTurn);
   noise_.acceleration = isotropic_noise(2.0 * depth_m, 10.0);
-  if (model_ == MotionModel::Modes) state.covariance.block<6, 6>(12, 12) = noise_.acceleration;
-  if (motion_.empty()) motion_ = guessed_motion(v, omega, frame_s);
-  restart(state);
+  if (learned_.motion.empty()) learned_.motion = guessed_motion(v, kHandTurn, frame_s);
+  CameraState estimate = resting_state(time, pose.T_world_camera, pose.covariance + learned_.pose, v, kHandTurn);
+  estimate.covariance.block<6, 6>(12, 12) = noise_.acceleration;
+  restart(std::move(estimate));
 }
 
 void LiveMotion::pass(Timestamp time) {
   state_ = predicted(time);
-  if (model_ == MotionModel::Modes) recent_.push_back({time, {}});
+  estimate_ = ::alidade::pass(estimate_, time, learned_.motion).state;
+  recent_.push_back({time, {}});
 }
 
 void LiveMotion::correct(const Eigen::Isometry3d& T_world_camera) {
-  state_.T_world_camera = T_world_camera;
+  state_.T_world_camera = estimate_.T_world_camera = T_world_camera;
 }
 
-void LiveMotion::restart(CameraState state) {
-  first_ = state_ = std::move(state);
+void LiveMotion::restart(CameraState estimate) {
+  first_ = estimate_ = std::move(estimate);
   recent_.clear();
 }
 
 void LiveMotion::learn() {
-  const auto filter = [this](const MotionProcess& motion) {
-    return std::vector<std::vector<MotionStep>>{filter_likelihoods(first_, recent_, motion)};
-  };
-  motion_ = learn_motion(std::move(motion_), kLearningSteps, filter);
+  learned_ = learned(std::move(learned_), first_, recent_, kLearningSteps);
   if (recent_.size() < 2 * kMemory) return;
-  first_ = filter(motion_).front()[kMemory - 1].state;
+  first_ = filter_recording(first_, recent_, learned_)[kMemory - 1].state;
   recent_.erase(recent_.begin(), recent_.begin() + kMemory);
 }
 

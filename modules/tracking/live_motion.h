@@ -3,29 +3,24 @@
 
 #include <vector>
 
-#include "geometry/trajectory.h"
-#include "tracking/motion_step.h"
+#include "tracking/recording_noise.h"
 
 namespace alidade {
 
-/// Which motion a live camera is taken to have.
-enum class MotionModel {
-  Modes,             ///< constant acceleration with modes, whose noise is learned from the last seconds
-  ConstantVelocity,  ///< the paper's, its noise adapted to the last steps
-};
-
-/// How a camera moves while it is followed frame by frame: its state, and what has been learned of the motion's noise.
+/// How a camera moves while it is followed frame by frame. Two beliefs: one to find its way by, loose and quick to
+/// follow, that each frame's pose overrides; and the estimate, which weighs each frame against the motion by the noise
+/// that both have shown.
 class LiveMotion {
  public:
-  explicit LiveMotion(MotionModel model) : model_(model) {}
-
+  /// At the last frame: constant velocity, its noise adapted to the last steps.
   const CameraState& state() const { return state_; }
+  const MotionNoise& noise() const { return noise_; }
 
-  /// Of constant velocity, as adapted to the last steps.
-  const MotionNoise& velocity_noise() const { return noise_; }
+  /// At the last frame, by motion_step.h; its noise learned from the last seconds.
+  const CameraState& estimate() const { return estimate_; }
 
   /// The state expected at `time`.
-  CameraState predicted(Timestamp time) const;
+  CameraState predicted(Timestamp time) const { return predict(state_, time, noise_); }
 
   /// At the second of two poses that may be many frames apart; `frame_s`: seconds from frame to frame.
   void start(const StampedPose& first, const StampedPose& second, double frame_s);
@@ -33,11 +28,11 @@ class LiveMotion {
   /// The frame's sightings were found where predicted() had them; `pose` is what they and the prediction give.
   void follow(Timestamp time, const PoseUpdate& pose);
 
-  /// It has gone where the prediction did not have it.
-  void jump(const StampedPose& pose);
+  /// It was found where the prediction did not have it, with points at `depth_m`.
+  void jump(Timestamp time, const PoseUpdate& pose, double depth_m, double frame_s);
 
-  /// Found again after a while, with points at `depth_m`: its motion is unknown, as far as a hand can move it.
-  void find_anew(const StampedPose& pose, double depth_m, double frame_s);
+  /// It was found again after a while: its motion is unknown, as far as a hand can move it.
+  void find_anew(Timestamp time, const PoseUpdate& pose, double depth_m, double frame_s);
 
   /// Not measured at `time`.
   void pass(Timestamp time);
@@ -46,14 +41,14 @@ class LiveMotion {
   void correct(const Eigen::Isometry3d& T_world_camera);
 
  private:
-  void restart(CameraState state);
+  void restart(CameraState estimate);
   void learn();
 
-  MotionModel model_;
   CameraState state_;
-  MotionProcess motion_;
-  MotionNoise noise_;                    // of constant velocity
-  CameraState first_;                    // before recent_
+  MotionNoise noise_;
+  CameraState estimate_;
+  RecordingNoise learned_;
+  CameraState first_;                    // the estimate before recent_
   std::vector<FrameLikelihood> recent_;  // to learn from
 };
 

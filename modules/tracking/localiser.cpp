@@ -152,8 +152,7 @@ std::optional<PoseUpdate> Localiser::estimate(const CameraState& predicted, cons
                                               bool use_prior) const {
   const auto observations = as_observations(map_, found, sigma_px_);
   PoseUpdateOptions update = options_.update;
-  const bool takes_map_as_exact = options_.pose == PoseMethod::EkfPaper || options_.pose == PoseMethod::Ukf;
-  if (takes_map_as_exact) update.map_uncertainty = MapUncertainty::Ignored;
+  if (options_.pose == PoseMethod::EkfPaper) update.map_uncertainty = MapUncertainty::Ignored;
   const auto estimate_with = [&](const CameraState& moving) {
     return estimate_pose(options_.pose, camera_, predicted, without_rolling_shutter(camera_, moving, observations),
                          update, use_prior);

@@ -3,6 +3,8 @@
 
 #include <limits>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include "tracking/state_smoother.h"
@@ -19,6 +21,17 @@ Vector6d accelerations(const CameraState& state) {
 // Covariance of what a step's noise changes the accelerations by.
 Matrix6d of_change(const MotionNoise& noise, double dt) {
   return dt * dt * noise.jerk + noise.jump;
+}
+
+// information - part, which is semidefinite but for rounding: what is left may be a tiny share of either.
+Matrix6d without(const Matrix6d& part, const Matrix6d& information) {
+  const Eigen::LLT<Matrix6d> root(information);
+  const Matrix6d half = root.matrixL().solve(part);
+  const Matrix6d share = root.matrixL().solve(half.transpose());
+  Eigen::SelfAdjointEigenSolver<Matrix6d> axes(Matrix6d::Identity() - 0.5 * (share + share.transpose()));
+  const Matrix6d left =
+      axes.eigenvectors() * axes.eigenvalues().cwiseMax(0.0).asDiagonal() * axes.eigenvectors().transpose();
+  return root.matrixL() * left * root.matrixU();
 }
 
 }  // namespace
@@ -39,7 +52,8 @@ MotionProcess learned(const MotionProcess& motion, std::span<const std::vector<M
       // What all of the recording says of the change but for the step's own noise, which was taken as a mean of the
       // modes': each mode's belief of the change is that with its own noise.
       const Matrix6d information = P.inverse();
-      const Matrix6d of_others = information - of_change(mean_noise(motion, steps[i + 1].mode_weight), dt).inverse();
+      const Matrix6d of_others =
+          without(of_change(mean_noise(motion, steps[i + 1].mode_weight), dt).inverse(), information);
       for (std::size_t m = 0; m < motion.size(); ++m) {
         const double probability = steps[i + 1].mode_weight[m];
         weight[m] += probability;

@@ -10,9 +10,9 @@
 namespace alidade {
 
 /// The motion process under which recordings, filtered with `motion`, are more probable: one step of expectation and
-/// maximisation of the innovation likelihood, for the modes' weights and what each has of jerk or jump (of one of them,
-/// not of both). No truth is needed. Returned as it is where there are fewer than ten steps.
-/// Source: Shumway and Stoffer 1982.
+/// maximisation of the innovation likelihood (as the steps have weighed it: kCaution included), for the modes' weights
+/// and what each has of jerk or jump (of one of them, not of both). No truth is needed. Returned as it is where there
+/// are fewer than ten steps. Source: Shumway and Stoffer 1982.
 MotionProcess learned(const MotionProcess& motion, std::span<const std::vector<MotionStep>> recordings);
 
 /// The best of such steps, until two in a row gain less than 2 in log evidence (more would be learned by heart), at

@@ -55,15 +55,4 @@ MotionStep pass(const CameraState& state, Timestamp time, const MotionProcess& m
   return step;
 }
 
-std::vector<MotionStep> filter_likelihoods(const CameraState& first, std::span<const FrameLikelihood> frames,
-                                           const MotionProcess& motion) {
-  std::vector<MotionStep> steps;
-  for (const FrameLikelihood& frame : frames) {
-    const CameraState& state = steps.empty() ? first : steps.back().state;
-    const bool is_seen = !frame.sightings.information.isZero(0.0);
-    steps.push_back(is_seen ? absorb(state, frame.time, motion, frame.sightings) : pass(state, frame.time, motion));
-  }
-  return steps;
-}
-
 }  // namespace alidade

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "estimation/pose_update.h"
@@ -32,15 +31,5 @@ MotionStep absorb(const CameraState& state, Timestamp time, const MotionProcess&
 
 /// The step to a frame that shows nothing.
 MotionStep pass(const CameraState& state, Timestamp time, const MotionProcess& motion);
-
-/// What the sightings of one frame of a recording say of its pose; without information where there are none.
-struct FrameLikelihood {
-  Timestamp time{};
-  PoseLikelihood sightings;
-};
-
-/// The steps from `first` through the frames of a recording, one per frame.
-std::vector<MotionStep> filter_likelihoods(const CameraState& first, std::span<const FrameLikelihood> frames,
-                                           const MotionProcess& motion);
 
 }  // namespace alidade

@@ -2,16 +2,17 @@
 #include "tracking/track_smoothing.h"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
-#include "tracking/motion_learning.h"
+#include "tracking/recording_noise.h"
 #include "tracking/state_smoother.h"
 
 namespace alidade {
 namespace {
 
 constexpr std::size_t kFewestFrames = 12;  // from which a motion's noise can be learned
-constexpr int kMostLearningSteps = 20;
+constexpr int kLearningSteps = 20;
 
 using Reports = std::span<FrameReport>;
 
@@ -73,12 +74,9 @@ Recording recording_of(Reports segment) {
 
 void smooth(Reports segment, const TrackSmoothingOptions& options) {
   const Recording recording = recording_of(segment);
-  const auto filter = [&](const MotionProcess& motion) {
-    return std::vector<std::vector<MotionStep>>{filter_likelihoods(recording.first, recording.frames, motion)};
-  };
-  const MotionProcess motion =
-      learn_motion(guessed_motion(recording.v, recording.omega, recording.dt), kMostLearningSteps, filter);
-  const std::vector<MotionStep> steps = filter_likelihoods(recording.first, recording.frames, motion);
+  RecordingNoise noise{guessed_motion(recording.v, recording.omega, recording.dt)};
+  noise = learned(std::move(noise), recording.first, recording.frames, kLearningSteps);
+  const std::vector<MotionStep> steps = filter_recording(recording.first, recording.frames, noise);
   const std::vector<CameraState> states = smoothed_states(steps, options.lag);
   for (std::size_t i = 0; i < segment.size(); ++i) {
     if (segment[i].is_keyframe) continue;

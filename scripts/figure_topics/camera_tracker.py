@@ -232,6 +232,10 @@ def measure_known_map(bench):
     ours = result["ours, causal"]
     yield "known-map/position-to-ransac", with_interval(ours["position_m"]["ratio"], 0.70)
     yield "known-map/frame-to-frame-to-ransac", with_interval(ours["frame_to_frame_m"]["ratio"], 0.50)
+    for lag in ("lag 3", "smoothed"):
+        for kind in ("position", "frame_to_frame"):
+            yield (f"known-map/{lag.replace(' ', '-')}/{kind.replace('_', '-')}-to-ransac",
+                   result[f"ours, {lag}"][f"{kind}_m"]["ratio"]["value"])
     lost = result["lost"]
     yield "known-map/frames-lost-that-pnp-keeps", len(set(lost["ours, causal"]) - set(lost["RANSAC-EPnP + LM"]))
     yield "known-map/nees-per-dof", in_range(ours["nees_per_dof"], 0.7, 1.5)
@@ -249,6 +253,8 @@ def measure_known_map(bench):
 KNOWN_MAP = Section("known-map", [
     ratio_figure("known-map/position-to-ransac", 0.70, 0.65),
     ratio_figure("known-map/frame-to-frame-to-ransac", 0.50, 0.45),
+    *(Figure(f"known-map/{lag}/{kind}-to-ransac")
+      for lag in ("lag-3", "smoothed") for kind in ("position", "frame-to-frame")),
     Figure("known-map/frames-lost-that-pnp-keeps", at_most=0),
     Figure("known-map/nees-per-dof", expected="0.7 to 1.5"),
     Figure("known-map/nees-per-dof-against-an-exact-truth"),
