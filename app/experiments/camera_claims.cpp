@@ -23,11 +23,4 @@ ExperimentSection camera_claims(const CameraScene& base, const ExperimentContext
   return section;
 }
 
-std::vector<Eigen::Vector3d> thinned(const std::vector<Eigen::Vector3d>& points, std::size_t count) {
-  if (count >= points.size()) return points;
-  std::vector<Eigen::Vector3d> fewer;
-  for (std::size_t i = 0; i < count; ++i) fewer.push_back(points[i * points.size() / count]);
-  return fewer;
-}
-
 }  // namespace alidade

@@ -33,7 +33,4 @@ ClaimEvidence nonlinearity_claims(const CameraScene& scene, const ExperimentCont
 /// "A better start makes bundle adjustment end better or sooner".
 ClaimEvidence bundle_start_claims(const CameraScene& scene, const ExperimentContext& context);
 
-/// About `count` of the points, or all of them: every n-th.
-std::vector<Eigen::Vector3d> thinned(const std::vector<Eigen::Vector3d>& points, std::size_t count);
-
 }  // namespace alidade

@@ -64,6 +64,19 @@ double paper_log_evidence(const Camera& camera, const CameraRun& run, const Moti
   return sum;
 }
 
+// Each frame by itself; one without an answer keeps the pose before it.
+template <typename Solve>
+Trajectory estimate_each(const CameraRun& run, const Solve& solve) {
+  Trajectory estimate;
+  StampedPose last = run.truth[kFirst - 1];
+  for (std::size_t k = kFirst; k < run.truth.size(); ++k) {
+    if (const auto T = solve(run.sightings[k])) last.T_world_camera = *T;
+    last.time = run.truth[k].time;
+    estimate.push_back(last);
+  }
+  return estimate;
+}
+
 }  // namespace
 
 CameraRun simulate_run(const CameraScene& scene, unsigned number) {
@@ -83,6 +96,13 @@ std::vector<CameraRun> simulate_runs(const CameraScene& scene, unsigned first, i
   std::vector<CameraRun> runs;
   for (int i = 0; i < count; ++i) runs.push_back(simulate_run(scene, first + static_cast<unsigned>(i)));
   return runs;
+}
+
+std::vector<Eigen::Vector3d> thinned(const std::vector<Eigen::Vector3d>& points, std::size_t count) {
+  if (count >= points.size()) return points;
+  std::vector<Eigen::Vector3d> fewer;
+  for (std::size_t i = 0; i < count; ++i) fewer.push_back(points[i * points.size() / count]);
+  return fewer;
 }
 
 CameraRun with_map_of_two_views(const Camera& camera, CameraRun run, double sigma_px) {
@@ -119,25 +139,11 @@ MotionProcess guessed_motion(const Trajectory& truth) {
 }
 
 Trajectory estimate_single_frames(const Camera& camera, const CameraRun& run, PnpMethod method) {
-  Trajectory estimate;
-  StampedPose last = run.truth[kFirst - 1];
-  for (std::size_t k = kFirst; k < run.truth.size(); ++k) {
-    if (const auto T = solve_pnp(camera, run.sightings[k], method)) last.T_world_camera = *T;
-    last.time = run.truth[k].time;
-    estimate.push_back(last);
-  }
-  return estimate;
+  return estimate_each(run, [&](const auto& sightings) { return solve_pnp(camera, sightings, method); });
 }
 
 Trajectory estimate_by_ransac(const Camera& camera, const CameraRun& run, double sigma_px) {
-  Trajectory estimate;
-  StampedPose last = run.truth[kFirst - 1];
-  for (std::size_t k = kFirst; k < run.truth.size(); ++k) {
-    if (const auto T = solve_pnp_ransac_lm(camera, run.sightings[k], sigma_px)) last.T_world_camera = *T;
-    last.time = run.truth[k].time;
-    estimate.push_back(last);
-  }
-  return estimate;
+  return estimate_each(run, [&](const auto& sightings) { return solve_pnp_ransac_lm(camera, sightings, sigma_px); });
 }
 
 Trajectory estimate_by_paper_filter(const Camera& camera, const CameraRun& run, const MotionNoise& noise,

@@ -36,6 +36,9 @@ CameraRun simulate_run(const CameraScene& scene, unsigned number);
 /// `count` runs from `first` on.
 std::vector<CameraRun> simulate_runs(const CameraScene& scene, unsigned first, int count);
 
+/// `count` of the points, or all of them: every n-th.
+std::vector<Eigen::Vector3d> thinned(const std::vector<Eigen::Vector3d>& points, std::size_t count);
+
 /// A run whose map is not known but triangulated from the first two frames, at their true poses; the points carry their
 /// covariance, and LM has no better ones.
 CameraRun with_map_of_two_views(const Camera& camera, CameraRun run, double sigma_px);

@@ -69,11 +69,7 @@ ExperimentSection camera_points(const CameraScene& base, const ExperimentContext
                     {}};
   for (std::size_t count : {10u, 20u, 50u, 100u, 200u}) {
     CameraScene scene = base;
-    scene.points.clear();
-    const std::size_t step = std::max<std::size_t>(1, base.points.size() / count);
-    for (std::size_t i = 0; i < base.points.size() && scene.points.size() < count; i += step) {
-      scene.points.push_back(base.points[i]);
-    }
+    scene.points = thinned(base.points, count);
     const auto errors =
         compare(scene, context, fmt::format("{} points", count),
                 {single_frames(scene, "EPnP", PnpMethod::Epnp), single_frames(scene, "EPnP + LM", PnpMethod::EpnpLm),

@@ -159,7 +159,7 @@ std::vector<FrameReport> MapStarter::locate_waiting(const LiveMap& live) const {
     PosePrior prior;
     const double fraction = to_seconds(report.time - a.time) / to_seconds(b.time - a.time);
     prior.T_world_camera = interpolate(a.T_world_camera, b.T_world_camera, fraction);
-    const auto update = update_pose(camera_, prior, observations);
+    const auto update = update_pose(camera_, prior, observations, {.map_uncertainty = MapUncertainty::Inflated});
     if (!update) continue;
     report.state = FrameState::Tracked;
     report.T_world_camera = update->T_world_camera;

@@ -43,5 +43,37 @@ class ExperimentOnRecording(ProgramTest):
         self.assert_refuses([*words, "stills", "--stills", "scene"], "scene: has no true poses; give .*Strecha")
 
 
+PLY = """ply
+format ascii 1.0
+element vertex {count}
+property float x
+property float y
+property float z
+end_header
+{rows}
+"""
+
+
+class ExperimentOnObject(ProgramTest):
+    def write_object(self, count):
+        rows = "\n".join(f"{i % 3} {i % 5} {i * i % 7}" for i in range(count))
+        (self.directory / "object.ply").write_text(PLY.format(count=count, rows=rows), encoding="utf-8")
+        return ["experiment", "camera", "--only", "outliers", "--runs", "2", "--points", "object.ply"]
+
+    def test_takes_the_vertices_of_a_ply(self):
+        self.assert_succeeds(*self.write_object(100), "-o", "out", "--quiet")
+        shares = self.summary("out")["outliers"]
+        for share in ("30", "50"):
+            self.assertLess(shares[share]["ours, causal"]["position_ratio"]["value"], 2.0)
+        self.assertTrue((self.directory / "out" / "report.html").is_file())
+
+    def test_refuses_what_is_no_object(self):
+        self.assert_refuses(self.write_object(9), "object.ply: has 9 vertices, 10 are needed; give the PLY")
+        (self.directory / "object.ply").write_text("solid", encoding="utf-8")
+        self.assert_refuses(["experiment", "camera", "--points", "object.ply"], "object.ply")
+        self.assert_refuses(["experiment", "camera", "--points", "nothing.ply"], "nothing.ply")
+        self.assert_refuses(["experiment", "camera", "--runs", "0"], "runs must be >= 1, got 0")
+
+
 if __name__ == "__main__":
     unittest.main()
