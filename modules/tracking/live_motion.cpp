@@ -2,6 +2,7 @@
 #include "tracking/live_motion.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace alidade {
 namespace {
@@ -12,6 +13,13 @@ constexpr int kLearningSteps = 2;
 
 // A hand turns by a radian per second and crosses half the depth in one.
 constexpr double kHandDepths = 0.5, kHandTurn = 1.0;
+
+bool is_finite(const RecordingNoise& noise) {
+  const auto is_sound = [](const MotionMode& mode) {
+    return std::isfinite(mode.weight) && mode.noise.jerk.allFinite() && mode.noise.jump.allFinite();
+  };
+  return noise.pose.allFinite() && std::all_of(noise.motion.begin(), noise.motion.end(), is_sound);
+}
 
 }  // namespace
 
@@ -72,7 +80,8 @@ void LiveMotion::restart(CameraState estimate) {
 }
 
 void LiveMotion::learn() {
-  learned_ = learned(std::move(learned_), first_, recent_, kLearningSteps);
+  RecordingNoise better = learned(learned_, first_, recent_, kLearningSteps);
+  if (is_finite(better)) learned_ = std::move(better);  // else what was known before stays
   if (recent_.size() < 2 * kMemory) return;
   first_ = filter_recording(first_, recent_, learned_)[kMemory - 1].state;
   recent_.erase(recent_.begin(), recent_.begin() + kMemory);
