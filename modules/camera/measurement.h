@@ -5,6 +5,8 @@
 
 #include <Eigen/Core>
 
+#include "core/time.h"
+
 namespace alidade {
 
 /// A map point seen at a pixel: two planes through the camera's centre, and what is known of the point itself.
@@ -16,6 +18,15 @@ struct PointObservation {
   /// Whence the point was triangulated (m): its error is then Gaussian in direction and inverse distance from there.
   /// Empty: it is Gaussian in p_world.
   std::optional<Eigen::Vector3d> seen_from;
+};
+
+/// What one linear detector read of one marker.
+struct LineReading {
+  Timestamp time{};
+  int detector = 0;    ///< LineDetector::id
+  int marker = 0;      ///< BodyMarker::id, as far as the detector knows
+  double value = 0.0;  ///< in the detector's unit (rad, px)
+  double sigma = 0.0;  ///< its standard deviation; 0: LineDetector::sigma
 };
 
 }  // namespace alidade
