@@ -55,11 +55,11 @@ std::optional<MeasuredPose> measure(const Camera& camera, const PosePrior& prior
 
 }  // namespace
 
-std::optional<FilterStep> filter_step(const Camera& camera, const CameraState& state, const SightingNoise& noise,
+std::optional<FilterStep> filter_step(const Camera& camera, const MotionState& state, const SightingNoise& noise,
                                       Timestamp time, std::span<const PointObservation> observations,
                                       const CameraFilterOptions& options) {
   // The gate must let through what any mode of the motion allows.
-  const CameraState widest = predict_without_noise(state, time);
+  const MotionState widest = predict_without_noise(state, time);
   Matrix6d P = covariance_in_map(widest);
   for (const MotionMode& mode : options.motion) {
     P += noise_covariance(state, widest, mode.noise).topLeftCorner<6, 6>();

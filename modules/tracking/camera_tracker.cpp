@@ -100,7 +100,7 @@ void CameraTracker::adopt(StartedMap started, const ImageFrame& frame) {
 
 FrameReport CameraTracker::track(const ImageFrame& frame, const FlowImage& flow) {
   // 1. Predict (eqs. 1-7).
-  const CameraState predicted = has_pose_ ? motion_.predicted(frame.time) : motion_.state();
+  const MotionState predicted = has_pose_ ? motion_.predicted(frame.time) : motion_.state();
   // 2. Find the map's points: by flow from the previous frame, else by SIFT near where they are expected, else
   // anywhere.
   const Localiser localiser = this->localiser();
@@ -139,7 +139,7 @@ double CameraTracker::median_range(const Eigen::Isometry3d& T_world_camera,
   return median(std::move(ranges));
 }
 
-FrameReport CameraTracker::accept(const ImageFrame& frame, const CameraState& predicted, Localisation attempt) {
+FrameReport CameraTracker::accept(const ImageFrame& frame, const MotionState& predicted, Localisation attempt) {
   const bool continues = has_pose_ && attempt.used_prior;
   FrameReport report;
   const bool anchor = keyframe_is_due(attempt);
@@ -168,7 +168,7 @@ FrameReport CameraTracker::accept(const ImageFrame& frame, const CameraState& pr
   report.time = frame.time;
   report.name = frame.name;
   report.state = FrameState::Tracked;
-  const CameraState& now = options_.pose == PoseMethod::Ekf ? motion_.estimate() : motion_.state();
+  const MotionState& now = options_.pose == PoseMethod::Ekf ? motion_.estimate() : motion_.state();
   report.T_world_camera = now.T_world_camera;
   report.covariance = now.covariance.topLeftCorner<6, 6>();
   report.likelihood = update.sightings;
@@ -195,7 +195,7 @@ void CameraTracker::move_on(const ImageFrame& frame, const Localisation& attempt
   }
 }
 
-std::vector<FrameExpectation> CameraTracker::expectations(const CameraState& predicted,
+std::vector<FrameExpectation> CameraTracker::expectations(const MotionState& predicted,
                                                           const std::vector<FoundPoint>& found) const {
   const PoseBelief belief{predicted.T_world_camera, predicted.covariance.topLeftCorner<6, 6>()};
   std::vector<FrameExpectation> result;
@@ -206,7 +206,7 @@ std::vector<FrameExpectation> CameraTracker::expectations(const CameraState& pre
   return result;
 }
 
-FrameReport CameraTracker::lose(const ImageFrame& frame, const CameraState& predicted) {
+FrameReport CameraTracker::lose(const ImageFrame& frame, const MotionState& predicted) {
   ++missed_;
   tracks_.clear();
   if (missed_ > options_.most_predicted) has_pose_ = false;
@@ -271,7 +271,7 @@ void CameraTracker::retrack_from_last_keyframe() {
 }
 
 // The inliers are the localiser's; pose and covariance become those of the filter that has points in its state.
-PoseUpdate CameraTracker::estimate_with_map(Timestamp time, const CameraState& predicted, const Localisation& attempt) {
+PoseUpdate CameraTracker::estimate_with_map(Timestamp time, const MotionState& predicted, const Localisation& attempt) {
   PoseUpdate update = *attempt.update;
   if (slam_) {
     const SlamFrame frame{time, motion_.noise(), inliers_of(attempt.found, update), sigma_px_};

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "reconstruction/resection.h"
+#include "tracking/without_rolling_shutter.h"
 
 namespace alidade {
 namespace {
@@ -39,7 +40,7 @@ Localiser::Localiser(const Camera& camera, const PointMap& map, const std::vecto
       sigma_px_(sigma_px),
       map_is_known_(map_is_known) {}
 
-Localisation Localiser::follow(const FollowedPoints& last, const CameraState& predicted, const FlowImage& flow) const {
+Localisation Localiser::follow(const FollowedPoints& last, const MotionState& predicted, const FlowImage& flow) const {
   std::vector<Eigen::Vector2d> from, guesses;
   for (const FoundPoint& track : last.points) {
     const Eigen::Vector3d& p = map_.points[static_cast<std::size_t>(track.point)].p_world;
@@ -61,7 +62,7 @@ Localisation Localiser::follow(const FollowedPoints& last, const CameraState& pr
   return attempt;
 }
 
-Localisation Localiser::search(const CameraState& predicted, const cv::Mat& grey) const {
+Localisation Localiser::search(const MotionState& predicted, const cv::Mat& grey) const {
   Localisation attempt;
   attempt.features = detect_sift(grey, options_.sift);
   SearchOptions near;
@@ -75,7 +76,7 @@ Localisation Localiser::search(const CameraState& predicted, const cv::Mat& grey
   return widen(predicted, std::move(attempt));
 }
 
-Localisation Localiser::relocalise(const CameraState& predicted, const cv::Mat& grey,
+Localisation Localiser::relocalise(const MotionState& predicted, const cv::Mat& grey,
                                    std::optional<Features> features) const {
   Localisation attempt;
   attempt.used_prior = false;
@@ -92,14 +93,14 @@ Localisation Localiser::relocalise(const CameraState& predicted, const cv::Mat& 
   }
   if (!pose) return attempt;
   for (int i : pose->inliers) attempt.found.push_back(matches[static_cast<std::size_t>(i)]);
-  CameraState start = predicted;
+  MotionState start = predicted;
   start.T_world_camera = pose->T_world_camera;
   attempt.update = estimate(start, attempt.found, false);
   if (!attempt.update) return attempt;
   return widen(start, std::move(attempt));
 }
 
-Localisation Localiser::match_every_descriptor(const CameraState& predicted, const cv::Mat& grey,
+Localisation Localiser::match_every_descriptor(const MotionState& predicted, const cv::Mat& grey,
                                                bool use_prior) const {
   Localisation attempt;
   attempt.features = detect_sift(grey, options_.sift);
@@ -108,7 +109,7 @@ Localisation Localiser::match_every_descriptor(const CameraState& predicted, con
   return attempt;
 }
 
-Localisation Localiser::anchor_in_features(const CameraState& predicted, const cv::Mat& grey,
+Localisation Localiser::anchor_in_features(const MotionState& predicted, const cv::Mat& grey,
                                            Localisation attempt) const {
   if (!attempt.features) attempt.features = detect_sift(grey, options_.sift);
   std::vector<FoundPoint> found =
@@ -127,7 +128,7 @@ Localisation Localiser::anchor_in_features(const CameraState& predicted, const c
   const auto more = search_points(camera_, map_, others, loosely(*attempt.update), *attempt.features, taken, near);
   found.insert(found.end(), more.begin(), more.end());
 
-  CameraState start = predicted;
+  MotionState start = predicted;
   if (!attempt.used_prior) start.T_world_camera = attempt.update->T_world_camera;
   const auto update = estimate(start, found, attempt.used_prior);
   if (!update || update->inlier_count < options_.least_inliers) return attempt;
@@ -148,12 +149,12 @@ bool Localiser::is_weak(const Localisation& attempt) const {
   return attempt.update->inlier_count < options_.weak_share * known;
 }
 
-std::optional<PoseUpdate> Localiser::estimate(const CameraState& predicted, const std::vector<FoundPoint>& found,
+std::optional<PoseUpdate> Localiser::estimate(const MotionState& predicted, const std::vector<FoundPoint>& found,
                                               bool use_prior) const {
   const auto observations = as_observations(map_, found, sigma_px_);
   PoseUpdateOptions update = options_.update;
   if (options_.pose == PoseMethod::EkfPaper) update.map_uncertainty = MapUncertainty::Ignored;
-  const auto estimate_with = [&](const CameraState& moving) {
+  const auto estimate_with = [&](const MotionState& moving) {
     return estimate_pose(options_.pose, camera_, predicted, without_rolling_shutter(camera_, moving, observations),
                          update, use_prior);
   };
@@ -164,7 +165,7 @@ std::optional<PoseUpdate> Localiser::estimate(const CameraState& predicted, cons
 }
 
 // With the pose nearly known, the other points of the map are looked for close to where they must be.
-Localisation Localiser::widen(const CameraState& predicted, Localisation first) const {
+Localisation Localiser::widen(const MotionState& predicted, Localisation first) const {
   Localisation wide = std::move(first);
   SearchOptions near;
   near.sigma_px = 1.5 * sigma_px_;
@@ -172,7 +173,7 @@ Localisation Localiser::widen(const CameraState& predicted, Localisation first) 
   const std::vector<bool> none_taken(static_cast<std::size_t>(wide.features->size()), false);
   auto found = search_points(camera_, map_, points_, loosely(*wide.update), *wide.features, none_taken, near);
   if (found.size() < wide.found.size()) return wide;
-  CameraState start = predicted;
+  MotionState start = predicted;
   if (!wide.used_prior) start.T_world_camera = wide.update->T_world_camera;
   const auto update = estimate(start, found, wide.used_prior);
   if (!update || update->inlier_count < wide.update->inlier_count) return wide;

@@ -12,7 +12,7 @@
 namespace alidade {
 namespace {
 
-PosePrior prior_of(const CameraState& predicted, bool use_prior) {
+PosePrior prior_of(const MotionState& predicted, bool use_prior) {
   PosePrior prior;
   prior.T_world_camera = predicted.T_world_camera;
   if (use_prior) prior.information = predicted.covariance.topLeftCorner<6, 6>().inverse();
@@ -39,7 +39,7 @@ std::optional<PoseUpdate> from_frame_alone(PnpMethod method, const Camera& camer
   return update;
 }
 
-std::optional<PoseUpdate> from_filter(const CameraState& state, PoseUpdate update) {
+std::optional<PoseUpdate> from_filter(const MotionState& state, PoseUpdate update) {
   if (!state.T_world_camera.matrix().allFinite()) return std::nullopt;
   update.T_world_camera = state.T_world_camera;
   update.covariance = state.covariance.topLeftCorner<6, 6>();
@@ -48,7 +48,7 @@ std::optional<PoseUpdate> from_filter(const CameraState& state, PoseUpdate updat
 
 }  // namespace
 
-std::optional<PoseUpdate> estimate_pose(PoseMethod method, const Camera& camera, const CameraState& predicted,
+std::optional<PoseUpdate> estimate_pose(PoseMethod method, const Camera& camera, const MotionState& predicted,
                                         std::span<const PointObservation> observations,
                                         const PoseUpdateOptions& options, bool use_prior) {
   auto update = update_pose(camera, prior_of(predicted, use_prior), observations, options);

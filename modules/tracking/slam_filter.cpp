@@ -43,16 +43,16 @@ void move_by(SlamState& state, const Eigen::VectorXd& error) {
 
 }  // namespace
 
-SlamState slam_state(const CameraState& camera) {
+SlamState slam_state(const MotionState& camera) {
   SlamState state{camera, {}, camera.covariance.topLeftCorner<kCamera, kCamera>()};
   state.camera.a_world.setZero();
-  state.camera.alpha_camera.setZero();
+  state.camera.alpha_body.setZero();
   state.camera.covariance.setZero();
   return state;
 }
 
-CameraState camera_of(const SlamState& state) {
-  CameraState camera = state.camera;
+MotionState camera_of(const SlamState& state) {
+  MotionState camera = state.camera;
   camera.covariance.topLeftCorner<kCamera, kCamera>() = state.covariance.topLeftCorner<kCamera, kCamera>();
   return camera;
 }

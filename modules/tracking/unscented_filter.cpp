@@ -43,7 +43,7 @@ std::optional<PixelSpread> pixel_spread(const Camera& camera, const SigmaPoses& 
 
 }  // namespace
 
-PoseLikelihood unscented_likelihood(const Camera& camera, const CameraState& predicted,
+PoseLikelihood unscented_likelihood(const Camera& camera, const MotionState& predicted,
                                     std::span<const PointObservation> observations, const UnscentedOptions& options) {
   if (!(options.alpha > 0 && options.alpha * options.alpha <= options.beta)) {
     throw std::invalid_argument(fmt::format("alpha must be in (0, sqrt(beta)], got {}", options.alpha));
@@ -86,7 +86,7 @@ PoseLikelihood unscented_likelihood(const Camera& camera, const CameraState& pre
   return likelihood;
 }
 
-CameraState update_unscented_filter(const Camera& camera, const CameraState& predicted,
+MotionState update_unscented_filter(const Camera& camera, const MotionState& predicted,
                                     std::span<const PointObservation> observations, const UnscentedOptions& options) {
   return absorb(predicted, unscented_likelihood(camera, predicted, observations, options));
 }

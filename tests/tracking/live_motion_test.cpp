@@ -56,7 +56,7 @@ TEST_F(LiveMotionTest, FindsItsWayByTheLastFrame) {
 
 TEST_F(LiveMotionTest, KnowsLessWithEveryFrameThatIsNotMeasured) {
   follow_to(100);
-  const CameraState before = motion_.estimate();
+  const MotionState before = motion_.estimate();
   motion_.pass(simulated_.frames[101].time);
   EXPECT_GT(motion_.estimate().covariance(0, 0), before.covariance(0, 0));
   EXPECT_EQ(motion_.estimate().time, simulated_.frames[101].time);
@@ -67,7 +67,7 @@ TEST_F(LiveMotionTest, GoesWhereItIsFoundAfterAJump) {
   FrameLikelihood far = simulated_.frames[101];
   far.sightings.T_world_camera.translation() += Eigen::Vector3d(1, 2, 3);
   motion_.jump(far.time, update_of(far), kDepth_m, kFrame_s);
-  for (const CameraState& state : {motion_.state(), motion_.estimate()}) {
+  for (const MotionState& state : {motion_.state(), motion_.estimate()}) {
     EXPECT_LT((state.T_world_camera.translation() - far.sightings.T_world_camera.translation()).norm(), 1e-6);
   }
 }

@@ -30,7 +30,7 @@ class EstimatePose : public testing::Test {
   PointMap map_ = test::make_map(camera_, 60, 1, 0.0, random_);
   Eigen::Isometry3d truth_ = map_.keyframes[0].T_world_camera;
   std::vector<PointObservation> observations_ = test::observations_of(map_, 0);
-  CameraState predicted_;
+  MotionState predicted_;
 };
 
 TEST_F(EstimatePose, GivesThePoseOnExactSightingsByEveryMethod) {

@@ -36,7 +36,7 @@ class LearnedRecordingNoise : public testing::Test {
   test::RandomGeometry random_{kSeed};
   const Matrix6d common_ = isotropic_noise(3e-3, 2e-3);
   const test::SimulatedLikelihoods simulated_ = test::simulated_likelihoods(300, common_, random_);
-  const CameraState first_ = test::before_likelihoods(simulated_);
+  const MotionState first_ = test::before_likelihoods(simulated_);
   const RecordingNoise guess_{guessed_motion(0.3, 0.3, 1.0 / 30)};
 
   std::vector<Eigen::Isometry3d> filtered_with(const RecordingNoise& noise) const {

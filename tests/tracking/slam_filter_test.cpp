@@ -42,7 +42,7 @@ class SlamFilter : public testing::Test {
 
   test::RandomGeometry random_{kSeed};
   test::SimulatedCamera simulated_ = test::simulated_camera(random_, kPoints);
-  CameraState camera_;
+  MotionState camera_;
 };
 
 TEST_F(SlamFilter, MeasuresByTheDerivative) {
@@ -66,7 +66,7 @@ TEST_F(SlamFilter, MovesTheCameraAsWithoutAMap) {
   const MotionNoise noise{isotropic_noise(0.5, 0.2)};
   const Timestamp time = camera_.time + from_seconds(0.1);
   const SlamState next = predict(state(0.1), time, noise);
-  const CameraState expected = predict(camera_, time, noise);
+  const MotionState expected = predict(camera_, time, noise);
   EXPECT_LT(error_between(expected, camera_of(next)).norm(), 1e-12);
   EXPECT_LT((camera_of(next).covariance - expected.covariance).cwiseAbs().maxCoeff(), 1e-15);
   EXPECT_EQ(next.points, state(0.1).points);
@@ -87,8 +87,8 @@ TEST_F(SlamFilter, IsTheCamerasFilterInAMapThatIsExact) {
   options.gate_chi2 = 100;
   const auto exact = update_pose(simulated_.camera, prior, observations, options);
   ASSERT_TRUE(exact);
-  const CameraState expected = absorb(camera_, exact->sightings);
-  const CameraState updated = camera_of(update_slam_filter(simulated_.camera, state(0), seen));
+  const MotionState expected = absorb(camera_, exact->sightings);
+  const MotionState updated = camera_of(update_slam_filter(simulated_.camera, state(0), seen));
   const auto sigmas = expected.covariance.diagonal().head<12>().cwiseSqrt();
   EXPECT_LT(error_between(expected, updated).head<12>().cwiseQuotient(sigmas).norm(), 1e-2) << "seed " << kSeed;
   EXPECT_LT((updated.covariance - expected.covariance).cwiseAbs().maxCoeff(),
@@ -157,14 +157,14 @@ TEST(SlamFilterConsistency, HoldsAndBeatsTheFilterThatTakesTheMapAsExact) {
     test::RandomGeometry random(kSeed + trial);
     test::SimulatedCamera simulated = test::simulated_camera(random, 40);
     simulated.noise = {isotropic_noise(0.5, 0.2)};
-    CameraState outside = test::belief_before_points(0.0);
+    MotionState outside = test::belief_before_points(0.0);
     std::vector<SlamPoint> points;
     for (const MapPoint& p : simulated.points) {
       points.push_back(
           {p.p_world + random.vector(kMapSigmaM), kMapSigmaM * kMapSigmaM * Eigen::Matrix3d::Identity(), {}});
     }
     SlamState in_state = with_points(slam_state(outside), points);
-    const CameraState start = moved_by(outside, test::drawn(random, outside.covariance));
+    const MotionState start = moved_by(outside, test::drawn(random, outside.covariance));
     const auto frames = simulated.recording(start, 20, random);
     for (const test::SimulatedFrame& frame : frames) {
       std::vector<SlamSighting> seen;

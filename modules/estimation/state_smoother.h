@@ -4,13 +4,13 @@
 #include <span>
 #include <vector>
 
-#include "tracking/motion_step.h"
+#include "estimation/motion_step.h"
 
 namespace alidade {
 
 /// What later frames say of a state.
 struct SmoothedState {
-  CameraState state;
+  MotionState state;
   Matrix18d with_next = Matrix18d::Zero();  ///< covariance of its error with that of the next; zero for the last
 };
 
@@ -19,6 +19,6 @@ struct SmoothedState {
 std::vector<SmoothedState> smooth(std::span<const MotionStep> steps);
 
 /// The states with a lag of `lag` frames: each given the steps up to that many after it; -1: given all.
-std::vector<CameraState> smoothed_states(std::span<const MotionStep> steps, int lag);
+std::vector<MotionState> smoothed_states(std::span<const MotionStep> steps, int lag);
 
 }  // namespace alidade

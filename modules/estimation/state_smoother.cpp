@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/state_smoother.h"
+#include "estimation/state_smoother.h"
 
 #include <algorithm>
 
@@ -12,9 +12,9 @@ std::vector<SmoothedState> smooth(std::span<const MotionStep> steps) {
   if (steps.empty()) return result;
   result.back().state = steps.back().state;
   for (std::size_t i = steps.size() - 1; i-- > 0;) {
-    const CameraState& now = steps[i].state;
-    const CameraState& predicted = steps[i + 1].predicted;
-    const CameraState& next = result[i + 1].state;
+    const MotionState& now = steps[i].state;
+    const MotionState& predicted = steps[i + 1].predicted;
+    const MotionState& next = result[i + 1].state;
     const Matrix18d F = transition_jacobian(now, predicted);
     // P Fᵀ P⁻¹ of the prediction, in units in which it has ones on its diagonal: positions and accelerations differ by
     // orders of magnitude.
@@ -30,8 +30,8 @@ std::vector<SmoothedState> smooth(std::span<const MotionStep> steps) {
   return result;
 }
 
-std::vector<CameraState> smoothed_states(std::span<const MotionStep> steps, int lag) {
-  std::vector<CameraState> states;
+std::vector<MotionState> smoothed_states(std::span<const MotionStep> steps, int lag) {
+  std::vector<MotionState> states;
   if (lag < 0) {
     for (SmoothedState& s : smooth(steps)) states.push_back(std::move(s.state));
     return states;

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "tracking/motion_step.h"
+#include "estimation/motion_step.h"
 
 namespace alidade {
 

@@ -8,7 +8,7 @@
 
 namespace alidade {
 
-/// What the motion model leaves out: covariances of (translation in world axes, rotation in camera axes), each held
+/// What the motion model leaves out: covariances of (translation in world axes, rotation in body axes), each held
 /// over a step as in the paper's eqs. 5 and 6.
 struct MotionNoise {
   Matrix6d acceleration = Matrix6d::Zero();  ///< that comes and goes with the step, (m/s², rad/s²)²
@@ -19,7 +19,7 @@ struct MotionNoise {
 /// Alike along all axes; `linear` and `angular` are standard deviations (m and rad per s², or per s³).
 Matrix6d isotropic_noise(double linear, double angular);
 
-/// A way in which the camera may move on, and how often it does.
+/// A way in which a body may move on, and how often it does.
 struct MotionMode {
   MotionNoise noise;
   double weight = 1.0;  ///< of all modes together: 1
@@ -28,7 +28,7 @@ struct MotionMode {
 /// The modes of a motion: calm most of the time, a manoeuvre now and then. In every step it is one of them.
 using MotionProcess = std::vector<MotionMode>;
 
-/// A first guess, for learning to start from, where a camera moves at `v` (m/s) and `omega` (rad/s) and is looked at
+/// A first guess, for learning to start from, where a body moves at `v` (m/s) and `omega` (rad/s) and is looked at
 /// every `dt` seconds: calm, a manoeuvre (its pace changes within a step), and a jolt, for it may just have set off.
 MotionProcess guessed_motion(double v, double omega, double dt);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/motion_noise.h"
+#include "estimation/motion_noise.h"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/motion_learning.h"
+#include "estimation/motion_learning.h"
 
 #include <limits>
 
@@ -7,14 +7,14 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
-#include "tracking/state_smoother.h"
+#include "estimation/state_smoother.h"
 
 namespace alidade {
 namespace {
 
-Vector6d accelerations(const CameraState& state) {
+Vector6d accelerations(const MotionState& state) {
   Vector6d a;
-  a << state.a_world, state.alpha_camera;
+  a << state.a_world, state.alpha_body;
   return a;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/camera_state.h"
+#include "estimation/motion_state.h"
 
 #include <algorithm>
 #include <array>
@@ -8,15 +8,14 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
-#include "camera/rolling_shutter.h"
 #include "geometry/rotation.h"
 
 namespace alidade {
 namespace {
 
 // The rotation vector of a step.
-Eigen::Vector3d turn_of(const CameraState& state, double dt) {
-  return dt * state.omega_camera + 0.5 * dt * dt * state.alpha_camera;
+Eigen::Vector3d turn_of(const MotionState& state, double dt) {
+  return dt * state.omega_body + 0.5 * dt * dt * state.alpha_body;
 }
 
 // F as its blocks, most of which are zero or multiples of one.
@@ -39,10 +38,10 @@ struct Transition {
   }
 };
 
-Transition transition(const CameraState& state, const CameraState& predicted) {
+Transition transition(const MotionState& state, const MotionState& predicted) {
   const double dt = to_seconds(predicted.time - state.time);
-  const Eigen::Matrix3d R_next_world = predicted.T_world_camera.linear().transpose();
-  return {dt, R_next_world, R_next_world * state.T_world_camera.linear(), right_jacobian_so3(turn_of(state, dt))};
+  const Eigen::Matrix3d R_next_world = predicted.T_world_body.linear().transpose();
+  return {dt, R_next_world, R_next_world * state.T_world_body.linear(), right_jacobian_so3(turn_of(state, dt))};
 }
 
 // G Q Gᵀ, where the noise moves pose, velocities and accelerations by G's three blocks.
@@ -58,48 +57,48 @@ Matrix18d spread(const std::array<Matrix6d, 3>& G, const Matrix6d& Q) {
 
 // How the pose that is measured in a map moves with the map's offset: a map displaced one way shows the camera
 // displaced the other.
-Matrix6d jacobian_of_offset(const CameraState& state) {
-  const Eigen::Matrix3d R_camera_world = state.T_world_camera.linear().transpose();
+Matrix6d jacobian_of_offset(const MotionState& state) {
+  const Eigen::Matrix3d R_camera_world = state.T_world_body.linear().transpose();
   Matrix6d J = Matrix6d::Zero();
   J.topLeftCorner<3, 3>() = -R_camera_world;
-  J.topRightCorner<3, 3>() = R_camera_world * skew(state.T_world_camera.translation() - state.map_offset.centre_world);
+  J.topRightCorner<3, 3>() = R_camera_world * skew(state.T_world_body.translation() - state.map_offset.centre_world);
   J.bottomRightCorner<3, 3>() = -R_camera_world;
   return J;
 }
 
 }  // namespace
 
-CameraState moved_by(CameraState state, const Vector18d& error) {
-  state.T_world_camera = state.T_world_camera * perturbation(error.head<6>());
+MotionState moved_by(MotionState state, const Vector18d& error) {
+  state.T_world_body = state.T_world_body * perturbation(error.head<6>());
   state.v_world += error.segment<3>(6);
-  state.omega_camera += error.segment<3>(9);
+  state.omega_body += error.segment<3>(9);
   state.a_world += error.segment<3>(12);
-  state.alpha_camera += error.segment<3>(15);
+  state.alpha_body += error.segment<3>(15);
   return state;
 }
 
-Vector18d error_between(const CameraState& from, const CameraState& to) {
+Vector18d error_between(const MotionState& from, const MotionState& to) {
   Vector18d error;
-  error << difference(from.T_world_camera, to.T_world_camera), to.v_world - from.v_world,
-      to.omega_camera - from.omega_camera, to.a_world - from.a_world, to.alpha_camera - from.alpha_camera;
+  error << difference(from.T_world_body, to.T_world_body), to.v_world - from.v_world, to.omega_body - from.omega_body,
+      to.a_world - from.a_world, to.alpha_body - from.alpha_body;
   return error;
 }
 
-CameraState predict(const CameraState& state, Timestamp time, const MotionNoise& noise) {
-  CameraState next = predict_without_noise(state, time);
+MotionState predict(const MotionState& state, Timestamp time, const MotionNoise& noise) {
+  MotionState next = predict_without_noise(state, time);
   next.covariance += noise_covariance(state, next, noise);
   return next;
 }
 
-CameraState predict_without_noise(const CameraState& state, Timestamp time) {
+MotionState predict_without_noise(const MotionState& state, Timestamp time) {
   const double dt = std::max(0.0, to_seconds(time - state.time));
-  CameraState next = state;
+  MotionState next = state;
   next.time = std::max(time, state.time);
-  next.T_world_camera.translation() += dt * state.v_world + 0.5 * dt * dt * state.a_world;
+  next.T_world_body.translation() += dt * state.v_world + 0.5 * dt * dt * state.a_world;
   const Eigen::Matrix3d turn = exp_so3(turn_of(state, dt));
-  next.T_world_camera.linear() = state.T_world_camera.linear() * turn;
+  next.T_world_body.linear() = state.T_world_body.linear() * turn;
   next.v_world += dt * state.a_world;
-  next.omega_camera += dt * state.alpha_camera;
+  next.omega_body += dt * state.alpha_body;
 
   const Transition F = transition(state, next);
   next.covariance = F * Matrix18d((F * state.covariance).transpose());  // F P Fᵀ: P is symmetric
@@ -107,7 +106,7 @@ CameraState predict_without_noise(const CameraState& state, Timestamp time) {
   return next;
 }
 
-Matrix18d noise_covariance(const CameraState& state, const CameraState& predicted, const MotionNoise& noise) {
+Matrix18d noise_covariance(const MotionState& state, const MotionState& predicted, const MotionNoise& noise) {
   const double dt = to_seconds(predicted.time - state.time);
   // What the noise does to the pose, in its own axes.
   const Transition F = transition(state, predicted);
@@ -124,12 +123,12 @@ Matrix18d noise_covariance(const CameraState& state, const CameraState& predicte
   return Q;
 }
 
-Matrix18d transition_jacobian(const CameraState& state, const CameraState& predicted) {
+Matrix18d transition_jacobian(const MotionState& state, const MotionState& predicted) {
   return transition(state, predicted) * Matrix18d(Matrix18d::Identity());
 }
 
-CameraState absorb(const CameraState& predicted, const PoseLikelihood& sightings) {
-  const PoseLikelihood z = about(predicted.T_world_camera, sightings);
+MotionState absorb(const MotionState& predicted, const PoseLikelihood& sightings) {
+  const PoseLikelihood z = about(predicted.T_world_body, sightings);
   const MapOffset& offset = predicted.map_offset;
   const Matrix6d of_offset = jacobian_of_offset(predicted);
   // Covariances with the pose in the map: of all of the state, of the pose in the map itself and of the offset.
@@ -141,7 +140,7 @@ CameraState absorb(const CameraState& predicted, const PoseLikelihood& sightings
   const Matrix18x6 K = gain * z.information;                                             // of the pose in the map
   const Vector18d error = gain * z.gradient;
 
-  CameraState state = moved_by(predicted, error);
+  MotionState state = moved_by(predicted, error);
   // Joseph's form of P - K Cᵀ: (I - K H) P (I - K H)ᵀ + K R Kᵀ over state and offset, whose own gain is zero.
   const Matrix18d K_C = K * C.transpose();
   const Matrix18x6 from_map = K * C_map + gain;
@@ -158,28 +157,28 @@ CameraState absorb(const CameraState& predicted, const PoseLikelihood& sightings
   return state;
 }
 
-CameraState absorb(const CameraState& predicted, const Eigen::Isometry3d& T_world_camera,
+MotionState absorb(const MotionState& predicted, const Eigen::Isometry3d& T_world_body,
                    const Matrix6d& pose_covariance) {
-  const Vector6d xi = difference(predicted.T_world_camera, T_world_camera);
+  const Vector6d xi = difference(predicted.T_world_body, T_world_body);
   const Matrix6d P = predicted.covariance.topLeftCorner<6, 6>();
   // How all of the state follows the pose: P_{:,pose} P_pose⁻¹.
   const Matrix18x6 follow = P.ldlt().solve(predicted.covariance.topRows<6>()).transpose();
-  CameraState state = moved_by(predicted, follow * xi);
-  state.T_world_camera = T_world_camera;
+  MotionState state = moved_by(predicted, follow * xi);
+  state.T_world_body = T_world_body;
   state.covariance = predicted.covariance + follow * (pose_covariance - P) * follow.transpose();
   state.covariance = 0.5 * (state.covariance + state.covariance.transpose()).eval();
   return state;
 }
 
-Matrix6d covariance_in_map(const CameraState& state) {
+Matrix6d covariance_in_map(const MotionState& state) {
   const Matrix6d J = jacobian_of_offset(state);
   const Matrix6d shared = state.map_offset.cross.topRows<6>() * J.transpose();
   return state.covariance.topLeftCorner<6, 6>() + shared + shared.transpose() +
          J * state.map_offset.covariance * J.transpose();
 }
 
-double log_evidence(const CameraState& predicted, const PoseLikelihood& sightings) {
-  return log_evidence(covariance_in_map(predicted), about(predicted.T_world_camera, sightings));
+double log_evidence(const MotionState& predicted, const PoseLikelihood& sightings) {
+  return log_evidence(covariance_in_map(predicted), about(predicted.T_world_body, sightings));
 }
 
 double log_evidence(const Matrix6d& covariance_in_map, const PoseLikelihood& sightings_about_prediction) {
@@ -191,19 +190,19 @@ double log_evidence(const Matrix6d& covariance_in_map, const PoseLikelihood& sig
   return 0.5 * (fit - best) - 0.5 * std::log(M.determinant());
 }
 
-PoseLikelihood about(const Eigen::Isometry3d& T_world_camera, const PoseLikelihood& likelihood) {
-  const Vector6d off = difference(T_world_camera, likelihood.T_world_camera);
-  Matrix6d J = Matrix6d::Zero();  // ∂(perturbation of likelihood.T_world_camera)/∂(perturbation of T_world_camera)
-  J.topLeftCorner<3, 3>() = likelihood.T_world_camera.linear().transpose() * T_world_camera.linear();
+PoseLikelihood about(const Eigen::Isometry3d& T_world_body, const PoseLikelihood& likelihood) {
+  const Vector6d off = difference(T_world_body, likelihood.T_world_body);
+  Matrix6d J = Matrix6d::Zero();  // ∂(perturbation of likelihood.T_world_body)/∂(perturbation of T_world_body)
+  J.topLeftCorner<3, 3>() = likelihood.T_world_body.linear().transpose() * T_world_body.linear();
   J.bottomRightCorner<3, 3>() = right_jacobian_so3(off.tail<3>());
   PoseLikelihood moved;
-  moved.T_world_camera = T_world_camera;
+  moved.T_world_body = T_world_body;
   moved.information = J.transpose() * likelihood.information * J;
   moved.gradient = J.transpose() * likelihood.gradient + moved.information * off;
   return moved;
 }
 
-MotionNoise adapt(const MotionNoise& noise, const CameraState& before, const CameraState& after, double share) {
+MotionNoise adapt(const MotionNoise& noise, const MotionState& before, const MotionState& after, double share) {
   const double dt = to_seconds(after.time - before.time);
   if (!(dt > 0)) return noise;
   const auto blend = [share](double variance, double change_squared) {
@@ -211,18 +210,18 @@ MotionNoise adapt(const MotionNoise& noise, const CameraState& before, const Cam
   };
   // A third of the squared norm is the variance per axis; twice that keeps the prior on the loose side.
   const double a2 = (after.v_world - before.v_world).squaredNorm() / (dt * dt) * 2.0 / 3.0;
-  const double alpha2 = (after.omega_camera - before.omega_camera).squaredNorm() / (dt * dt) * 2.0 / 3.0;
+  const double alpha2 = (after.omega_body - before.omega_body).squaredNorm() / (dt * dt) * 2.0 / 3.0;
   const Vector6d now = noise.acceleration.diagonal();
   MotionNoise next = noise;
   next.acceleration = isotropic_noise(std::sqrt(blend(now(0), a2)), std::sqrt(blend(now(3), alpha2)));
   return next;
 }
 
-CameraState resting_state(Timestamp time, const Eigen::Isometry3d& T_world_camera, const Matrix6d& pose_covariance,
+MotionState resting_state(Timestamp time, const Eigen::Isometry3d& T_world_body, const Matrix6d& pose_covariance,
                           double v_sigma, double omega_sigma) {
-  CameraState state;
+  MotionState state;
   state.time = time;
-  state.T_world_camera = T_world_camera;
+  state.T_world_body = T_world_body;
   state.covariance.setZero();
   state.covariance.topLeftCorner<6, 6>() = pose_covariance;
   state.covariance.block<3, 3>(6, 6) = v_sigma * v_sigma * Eigen::Matrix3d::Identity();
@@ -230,14 +229,14 @@ CameraState resting_state(Timestamp time, const Eigen::Isometry3d& T_world_camer
   return state;
 }
 
-CameraState moving_state(const StampedPose& first, const StampedPose& second) {
+MotionState moving_state(const StampedPose& first, const StampedPose& second) {
   const double dt = std::max(1e-6, to_seconds(second.time - first.time));
   const Vector6d motion = difference(first.T_world_camera, second.T_world_camera);
   const double v = motion.head<3>().norm() / dt, omega = motion.tail<3>().norm() / dt;
-  CameraState state = resting_state(second.time, second.T_world_camera,
+  MotionState state = resting_state(second.time, second.T_world_camera,
                                     second.covariance.value_or(Matrix6d::Zero()) + 1e-12 * Matrix6d::Identity(), 0, 0);
   state.v_world = (second.T_world_camera.translation() - first.T_world_camera.translation()) / dt;
-  state.omega_camera = motion.tail<3>() / dt;
+  state.omega_body = motion.tail<3>() / dt;
   const Matrix6d A = isotropic_noise(v / dt, omega / dt);
   state.covariance.block<6, 6>(12, 12) = A;
   state.covariance.block<6, 6>(6, 12) = state.covariance.block<6, 6>(12, 6) = 0.5 * dt * A;
@@ -245,20 +244,10 @@ CameraState moving_state(const StampedPose& first, const StampedPose& second) {
   return state;
 }
 
-Vector6d twist_of(const CameraState& state) {
+Vector6d twist_of(const MotionState& state) {
   Vector6d twist;
-  twist << state.T_world_camera.linear().transpose() * state.v_world, state.omega_camera;
+  twist << state.T_world_body.linear().transpose() * state.v_world, state.omega_body;
   return twist;
-}
-
-std::vector<PointObservation> without_rolling_shutter(const Camera& camera, const CameraState& state,
-                                                      std::vector<PointObservation> observations) {
-  const Eigen::Isometry3d T_camera_world = state.T_world_camera.inverse();
-  for (PointObservation& o : observations) {
-    const double depth_m = (T_camera_world * o.p_world).z();
-    if (depth_m > 0) o.pixel = at_middle_row(camera, o.pixel, twist_of(state), depth_m);
-  }
-  return observations;
 }
 
 }  // namespace alidade
