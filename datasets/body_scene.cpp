@@ -96,7 +96,7 @@ LineDetector make_detector(int block, int place, const BodySceneOptions& options
   detector.T_world_station = T_world_block(block, options.blocks);
   detector.T_station_detector = Eigen::Translation3d((place - 1.5) * kSpacing_m, 0, 0) *
                                 Eigen::AngleAxisd(place * pi / kDetectorsPerBlock, Eigen::Vector3d::UnitZ());
-  detector.sigma = options.sigma_rad;
+  if (options.sigma_rad > 0) detector.sigma = options.sigma_rad;
   return detector;
 }
 

@@ -22,7 +22,7 @@ struct BodySceneOptions {
   int markers = 4;          ///< of each body: 3 (a bent triangle), 4 (a tetrahedron) or 8 (a cube)
   int blocks = 3;           ///< of four detectors, each a station
   int bodies = 1;           ///< all alike but for the disturbance of their corners
-  double sigma_rad = 1e-4;  ///< of a reading, about the focal line
+  double sigma_rad = 1e-4;  ///< of a reading, about the focal line; 0: exact, and told to be of LineDetector's default
   double wrong_ids = 0.0;   ///< share of readings that are named after another marker of the same body
   double occluded = 0.0;    ///< probability that a block does not see a marker, once drawn; 0.6 on the paper's page
   double redrawn = 0.03;    ///< probability per frame that it is drawn anew: bursts of 1 / redrawn frames

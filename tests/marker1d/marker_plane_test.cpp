@@ -62,8 +62,10 @@ TEST_F(MarkerPlanes, LeaveOutMarkersBehindTheDetectorAndRefuseUnknownOnes) {
   EXPECT_TRUE(marker_planes(scene_.detectors(), body, {}, T_).empty());
   frame_.readings[0].detector = 99;
   EXPECT_THROW(marker_planes(scene_.detectors(), body, frame_.readings, T_), std::invalid_argument);
-  frame_.readings[0] = {{}, 0, 0, 0.0, 0.0};  // no sigma, nor has the detector
-  EXPECT_THROW(marker_planes(scene_.detectors(), body, frame_.readings, T_), std::invalid_argument);
+  std::vector<LineDetector> noiseless = scene_.detectors();
+  noiseless[0].sigma = 0.0;
+  const std::vector<LineReading> reading{{{}, 0, 0, 0.0, 0.0}};
+  EXPECT_THROW(marker_planes(noiseless, body, reading, T_), std::invalid_argument);
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ BodyScene scene_of(int markers, double sigma_rad) {
   BodySceneOptions options;
   options.frames = 200;
   options.markers = markers;
-  options.sigma_rad = sigma_rad == 0 ? 1e-15 : sigma_rad;
+  options.sigma_rad = sigma_rad;
   return BodyScene(options);
 }
 
