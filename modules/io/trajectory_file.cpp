@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "core/errors.h"
-#include "io/atomic_file.h"
 #include "io/pose_files.h"
 #include "io/text_rows.h"
 
@@ -189,16 +188,22 @@ TrajectoryFile read_trajectory(const fs::path& path) {
   return fs::is_directory(path) ? read_folder(path) : read_file(path);
 }
 
+TrajectoryWriter::TrajectoryWriter(const fs::path& path, std::string_view moved) : file_(path) {
+  file_.write(fmt::format("# timestamp[s] tx ty tz[m] qx qy qz qw: {} to world\n", moved));
+}
+
+void TrajectoryWriter::write(const StampedPose& pose) {
+  const Eigen::Vector3d t = pose.T_world_camera.translation();
+  Eigen::Quaterniond q(pose.T_world_camera.linear());
+  if (q.w() < 0) q.coeffs() *= -1;
+  file_.write(fmt::format("{} {} {} {} {} {} {} {}\n", format_seconds(pose.time), t.x(), t.y(), t.z(), q.x(), q.y(),
+                          q.z(), q.w()));
+}
+
 void write_trajectory_tum(const fs::path& path, const Trajectory& trajectory) {
-  std::string text = "# timestamp[s] tx ty tz[m] qx qy qz qw: camera to world\n";
-  for (const StampedPose& pose : trajectory) {
-    const Eigen::Vector3d t = pose.T_world_camera.translation();
-    Eigen::Quaterniond q(pose.T_world_camera.linear());
-    if (q.w() < 0) q.coeffs() *= -1;
-    text += fmt::format("{} {} {} {} {} {} {} {}\n", format_seconds(pose.time), t.x(), t.y(), t.z(), q.x(), q.y(),
-                        q.z(), q.w());
-  }
-  write_file(path, text);
+  TrajectoryWriter file(path);
+  for (const StampedPose& pose : trajectory) file.write(pose);
+  file.commit();
 }
 
 }  // namespace alidade
