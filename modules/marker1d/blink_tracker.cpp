@@ -21,6 +21,7 @@ using Eigen::VectorXd;
 constexpr double kGate = 5.0;            // standard deviations
 constexpr double kStrayPerPx = 1e-3;     // new and false spots
 constexpr double kBroken_px = 15.0;      // a track whose position is less certain has no neighbourhood left
+constexpr double kSameSpot = 0.98;       // least probability by which what comes tells who it was before
 constexpr double kModelError_px = 0.03;  // of positions, beside their noise: spots are not quite Gaussian
 
 double normal_density(double difference, double variance) {
@@ -38,6 +39,7 @@ void validate(const BlinkTrackerOptions& options) {
   require(is_share(options.identity.seen_when_lit), "identity.seen_when_lit", options.identity.seen_when_lit, "0 to 1");
   require(is_share(options.identity.seen_when_dark), "identity.seen_when_dark", options.identity.seen_when_dark,
           "0 to 1");
+  require(is_share(options.identity.foreign), "identity.foreign", options.identity.foreign, "0 to 1");
   require(options.speed_px > 0 && std::isfinite(options.speed_px), "speed_px", options.speed_px, "> 0");
   require(options.acceleration_px > 0 && std::isfinite(options.acceleration_px), "acceleration_px",
           options.acceleration_px, "> 0");
@@ -128,7 +130,7 @@ void BlinkTracker::update(std::size_t index, std::span<const LinePeak> peaks, co
   }
   const LinePeak& peak = peaks[static_cast<std::size_t>(choice)];
   track.belief = hypotheses_.after_seen(belief / belief.sum(), row_, peak);
-  if (probability < options_.certainty) track.waiting.clear();  // what comes may be of another marker
+  if (probability < kSameSpot) track.waiting.clear();  // what comes may be of another marker
   see(track, peak, is_shared(index, peak, assigned));
 }
 

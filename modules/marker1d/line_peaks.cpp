@@ -137,7 +137,7 @@ double height(const Spot& spot) {
 // The fit with one spot more, two in place of one, where that explains the pixels much better and both are real: a spot
 // that is a little wider than believed would become two of half its height, side by side.
 std::optional<SpotFit> split(const LineRow& row, PixelRange range, const SpotFit& fit, double spot_sigma_px) {
-  constexpr double kLeastGain = 20.0, kLeastRatio = 0.2, kLeastDistance = 0.7;
+  constexpr double kLeastGain = 30.0, kLeastRatio = 0.2, kLeastDistance = 0.7;
   std::optional<SpotFit> best;
   for (std::size_t j = 0; j < fit.spots.size(); ++j) {
     std::vector<double> starts;
@@ -145,9 +145,12 @@ std::optional<SpotFit> split(const LineRow& row, PixelRange range, const SpotFit
     starts[j] -= 0.8 * spot_sigma_px;
     starts.insert(starts.begin() + static_cast<std::ptrdiff_t>(j) + 1, starts[j] + 1.6 * spot_sigma_px);
     const auto trial = fit_spots(row, range, starts, spot_sigma_px);
-    if (!trial || trial->chi2 > fit.chi2 - kLeastGain || (best && trial->chi2 > best->chi2)) continue;
+    if (!trial || (best && trial->chi2 > best->chi2)) continue;
+    // An F test: what scatter the two leave, too, says how large the noise is where it is not known well.
+    const double scatter = std::max(1.0, trial->chi2 / std::max(1, trial->degrees_of_freedom));
+    if (fit.chi2 - trial->chi2 < kLeastGain * scatter) continue;
     const Spot &a = trial->spots[j], &b = trial->spots[j + 1];
-    const auto [low, high] = std::minmax(height(a), height(b));
+    const double low = std::min(height(a), height(b)), high = std::max(height(a), height(b));
     if (low < kLeastRatio * high || b.position_px - a.position_px < kLeastDistance * spot_sigma_px) continue;
     best = trial;
   }

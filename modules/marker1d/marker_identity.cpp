@@ -8,6 +8,12 @@
 #include "marker1d/blink_code.h"
 
 namespace alidade {
+namespace {
+
+// A light that is none of the markers: how often it is seen, whenever that is, and how well its colour fits.
+constexpr double kForeignSeen = 0.8, kForeignColour = 0.03;
+
+}  // namespace
 
 using Eigen::Index;
 
@@ -21,9 +27,10 @@ MarkerHypotheses::MarkerHypotheses(std::vector<MarkerSign> signs, const Identity
     const std::size_t phases = signs_[s].phase ? 1 : length;
     for (std::size_t k = 0; k < phases; ++k) {
       hypotheses_.push_back({s, (first + k) % length});
-      shares.push_back(1.0 / static_cast<double>(signs_.size() * phases));
+      shares.push_back((1.0 - options_.foreign) / static_cast<double>(signs_.size() * phases));
     }
   }
+  shares.push_back(options_.foreign);
   unknown_ = Eigen::Map<const Eigen::ArrayXd>(shares.data(), static_cast<Index>(shares.size()));
 }
 
@@ -38,8 +45,13 @@ bool MarkerHypotheses::is_lit(const Hypothesis& hypothesis, std::int64_t row) co
   return code[static_cast<std::size_t>(step)] == '1';
 }
 
+double MarkerHypotheses::seen_probability(std::size_t hypothesis, std::int64_t row) const {
+  if (hypothesis == hypotheses_.size()) return kForeignSeen;
+  return is_lit(hypotheses_[hypothesis], row) ? options_.seen_when_lit : options_.seen_when_dark;
+}
+
 double MarkerHypotheses::lit_probability(const IdentityBelief& belief, std::int64_t row) const {
-  double sum = 0.0;
+  double sum = kForeignSeen * belief(belief.size() - 1);
   for (std::size_t h = 0; h < hypotheses_.size(); ++h) {
     if (is_lit(hypotheses_[h], row)) sum += belief(static_cast<Index>(h));
   }
@@ -50,19 +62,19 @@ IdentityBelief MarkerHypotheses::after_seen(const IdentityBelief& belief, std::i
                                             const LinePeak& peak) const {
   std::vector<double> colour;
   for (const MarkerSign& sign : signs_) colour.push_back(colour_likelihood(sign, peak));
+  const bool has_colour = std::any_of(signs_.begin(), signs_.end(), [](const auto& sign) { return sign.colour; });
   IdentityBelief next = belief;
   for (std::size_t h = 0; h < hypotheses_.size(); ++h) {
-    const double seen = is_lit(hypotheses_[h], row) ? options_.seen_when_lit : options_.seen_when_dark;
-    next(static_cast<Index>(h)) *= seen * colour[hypotheses_[h].sign];
+    next(static_cast<Index>(h)) *= seen_probability(h, row) * colour[hypotheses_[h].sign];
   }
+  next(next.size() - 1) *= kForeignSeen * (has_colour ? kForeignColour : 1.0);
   return normalised(std::move(next));
 }
 
 IdentityBelief MarkerHypotheses::after_dark(const IdentityBelief& belief, std::int64_t row) const {
   IdentityBelief next = belief;
-  for (std::size_t h = 0; h < hypotheses_.size(); ++h) {
-    const double seen = is_lit(hypotheses_[h], row) ? options_.seen_when_lit : options_.seen_when_dark;
-    next(static_cast<Index>(h)) *= 1.0 - seen;
+  for (std::size_t h = 0; h <= hypotheses_.size(); ++h) {
+    next(static_cast<Index>(h)) *= 1.0 - seen_probability(h, row);
   }
   return normalised(std::move(next));
 }

@@ -11,7 +11,7 @@
 
 namespace alidade {
 
-/// How probable each hypothesis of MarkerHypotheses is; sums to 1.
+/// How probable each hypothesis of MarkerHypotheses is, the last one being "none of the markers"; sums to 1.
 using IdentityBelief = Eigen::ArrayXd;
 
 struct IdentityOptions {
@@ -19,12 +19,15 @@ struct IdentityOptions {
   double seen_when_dark = 0.02;  ///< probability that a foreign light is taken for the dark marker
   /// Probability per row that what is followed became another marker unnoticed, so that belief can recover.
   double exchange = 1e-6;
+  /// Probability that a new spot is none of the markers: a lamp, a reflection.
+  double foreign = 0.01;
   /// Standard deviation of a colour's share about the given one, beside the pixels' noise.
   double colour_tolerance = 0.05;
 };
 
 /// Which marker a followed spot may be, and which row of its code it shows: one hypothesis per marker and phase (one
-/// where the phase is known). A spot is identified by its belief, moved by what each row shows of it.
+/// where the phase is known), and that it is none of them. A spot is identified by its belief, moved by what each row
+/// shows of it.
 class MarkerHypotheses {
  public:
   /// Throws std::invalid_argument where find_fault(signs) has something to say.
@@ -53,6 +56,7 @@ class MarkerHypotheses {
   };
 
   bool is_lit(const Hypothesis& hypothesis, std::int64_t row) const;
+  double seen_probability(std::size_t hypothesis, std::int64_t row) const;
   double colour_likelihood(const MarkerSign& sign, const LinePeak& peak) const;
   IdentityBelief normalised(IdentityBelief belief) const;
 

@@ -13,6 +13,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+constexpr double kShapeError = 0.003;  // of a spot, in its height: lenses and pixels make it not quite Gaussian
+
 // Unknowns: positions of the J spots; then, per channel, their J amplitudes and the background's offset.
 class SpotProblem {
  public:
@@ -33,7 +35,8 @@ class SpotProblem {
     for (int i = range_.first; i <= range_.last; ++i) {
       if (!row_.is_usable(i)) continue;
       for (Index c = 0; c < channels(); ++c) {
-        weight(i - range_.first, c) = 1.0 / (row_.variance(i, c) + row_.shot * std::max(0.0, model(x, i, c)));
+        const double light = std::max(0.0, model(x, i, c));
+        weight(i - range_.first, c) = 1.0 / (row_.variance(i, c) + light * (row_.shot + kShapeError * kShapeError * light));
       }
     }
     return weight;

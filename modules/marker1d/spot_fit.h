@@ -33,7 +33,8 @@ struct PixelRange {
 
 /// The most likely positions and heights of spots that overlap, all of width `spot_sigma_px` (of the spot as the image
 /// shows it, the pixel's own width included), on a common unknown background offset per channel:
-///   signal_c(i) = b_c + Σ_j a_jc exp(−(i − x_j)² / 2s²),  variance_c(i) = row.variance + row.shot · signal.
+///   signal_c(i) = b_c + Σ_j a_jc exp(−(i − x_j)² / 2s²),  variance_c(i) = row.variance + row.shot · signal
+/// and 0.3 % of the spot, by which no spot is quite Gaussian.
 /// Gauss–Newton on the weighted squares with the variances of the model (quasi-likelihood, which for shot and read
 /// noise is the maximum likelihood); the deviations are those of the Cramér–Rao bound. Unusable pixels have no weight.
 /// Empty where the pixels do not determine the spots, or one gets negative or leaves the range.
