@@ -51,15 +51,12 @@ LineDetector make_detector(int block, int k) {
   return detector;
 }
 
-// px; empty where the detector does not see the point.
-std::optional<double> project_line(const LineDetector& detector, const Eigen::Vector3d& p_world) {
-  const auto& lens = std::get<LineCamera>(detector.model);
-  const Eigen::Vector3d p = (detector.T_world_station * detector.T_station_detector).inverse() * p_world;
-  if (p.z() <= 0) return std::nullopt;
-  const double q = p.x() / p.z(), q2 = q * q;
-  const double u = lens.c + lens.f * q * (1.0 + q2 * (lens.k1 + q2 * (lens.k2 + q2 * lens.k3)));
-  if (u < -0.5 || u > lens.width - 0.5) return std::nullopt;
-  return u;
+// px; empty where the marker's image is not on the line.
+std::optional<double> seen_at(const LineDetector& detector, const Eigen::Vector3d& p_world) {
+  const auto projection = project(detector, p_world);
+  const int width = std::get<LineCamera>(detector.model).width;
+  if (!projection || projection->value < -0.5 || projection->value > width - 0.5) return std::nullopt;
+  return projection->value;
 }
 
 bool is_lit(const MarkerSign& sign, int phase, int row) {
@@ -172,7 +169,7 @@ std::vector<std::vector<LineImageTruth>> line_image_truth(const LineImageScene& 
   for (int row = 0; row < rows; ++row) {
     const Eigen::Isometry3d T_world_body = T_world_body_in_figures(row / scene.rate_hz);
     for (std::size_t m = 0; m < scene.signs.size(); ++m) {
-      const auto position = project_line(detector, T_world_body * scene.body.markers[m].p_body);
+      const auto position = seen_at(detector, T_world_body * scene.body.markers[m].p_body);
       if (!position) continue;
       LineImageTruth seen;
       seen.marker = scene.signs[m].id;

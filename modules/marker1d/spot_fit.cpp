@@ -36,7 +36,8 @@ class SpotProblem {
       if (!row_.is_usable(i)) continue;
       for (Index c = 0; c < channels(); ++c) {
         const double light = std::max(0.0, model(x, i, c));
-        weight(i - range_.first, c) = 1.0 / (row_.variance(i, c) + light * (row_.shot + kShapeError * kShapeError * light));
+        weight(i - range_.first, c) =
+            1.0 / (row_.variance(i, c) + light * (row_.shot + kShapeError * kShapeError * light));
       }
     }
     return weight;
