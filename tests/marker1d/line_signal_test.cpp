@@ -10,10 +10,14 @@
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
+#include "datasets/line_image_recording.h"
 #include "datasets/line_image_scene.h"
 #include "geometry/pose.h"
 #include "geometry/rotation.h"
+#include "io/image_files.h"
+#include "io/line_images.h"
 #include "marker1d/blink_code.h"
+#include "tests/support/temporary_directory.h"
 
 namespace alidade {
 namespace {
@@ -266,6 +270,33 @@ TEST(LineSignal, ReadsRowByRowWhatItReadsAtOnce) {
   EXPECT_EQ(signal.counts().identified, all.counts.identified);
   EXPECT_TRUE(std::is_sorted(all.readings.begin(), all.readings.end(),
                              [](const LineReading& a, const LineReading& b) { return a.time < b.time; }));
+}
+
+TEST(LineSignal, ReadsFromFilesWhatItReadsFromImages) {
+  LineImageScene scene = thinned(usual_scene(), 6);
+  const test::TemporaryDirectory folder;
+  write_line_images(scene, 60, folder.path());
+  const LineImageSet set = read_line_image_set(folder.path());
+  ASSERT_EQ(set.detectors.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    LineSignalOptions options;
+    options.detector = set.detectors[i].detector;
+    options.rate_hz = set.rate_hz;
+    options.first_time = set.first_time;
+    options.signs = set.signs;
+    options.peaks.spot_sigma_px = *set.spot_sigma_px;
+    options.peaks.noise = {set.read_noise, set.counts_per_electron};
+    const auto from_file = read_rows(read_line_image(set.detectors[i].parts[0]), options);
+    const LineDetector& detector = scene.detectors[i];
+    const auto direct = read_rows(render_line_image(scene, detector, 60), options_for(scene, detector));
+    ASSERT_EQ(from_file.readings.size(), direct.readings.size());
+    ASSERT_GT(direct.readings.size(), 100u);
+    for (std::size_t k = 0; k < direct.readings.size(); ++k) {
+      EXPECT_EQ(from_file.readings[k].detector, detector.id);
+      EXPECT_EQ(from_file.readings[k].marker, direct.readings[k].marker);
+      EXPECT_NEAR(from_file.readings[k].value, direct.readings[k].value, 1e-6);
+    }
+  }
 }
 
 TEST(LineSignal, GoesOnAfterLostRows) {
