@@ -295,14 +295,6 @@ TEST(FindPeaks, AtTheEndsOfTheRowIsFinite) {
   }
 }
 
-TEST(FindPeaks, OfARowWithoutContrastIsEmpty) {
-  EXPECT_TRUE(find_peaks(cv::Mat(1, 2048, CV_8U, cv::Scalar(0))).empty());
-  EXPECT_TRUE(find_peaks(cv::Mat(1, 2048, CV_8U, cv::Scalar(255))).empty());
-  EXPECT_TRUE(find_peaks(cv::Mat(1, 2048, CV_16UC3, cv::Scalar(7, 8, 9))).empty());
-  EXPECT_TRUE(find_peaks(cv::Mat(1, 1, CV_8U, cv::Scalar(9))).empty());
-  EXPECT_TRUE(find_peaks(std::vector<float>(100, std::numeric_limits<float>::quiet_NaN())).empty());
-}
-
 TEST(FindPeaks, OverlooksValuesThatAreNotFinite) {
   std::vector<float> row(256);
   std::mt19937_64 random(9);
@@ -315,27 +307,6 @@ TEST(FindPeaks, OverlooksValuesThatAreNotFinite) {
   ASSERT_EQ(peaks.size(), 1u);
   EXPECT_NEAR(peaks[0].position_px, 99.6, 0.05);
   EXPECT_TRUE(std::isfinite(peaks[0].sigma_px) && std::isfinite(peaks[0].snr));
-}
-
-TEST(FindPeaks, OfAnythingElseThanARowThrows) {
-  EXPECT_THROW(find_peaks(cv::Mat()), std::invalid_argument);
-  EXPECT_THROW(find_peaks(cv::Mat::zeros(2, 100, CV_8U)), std::invalid_argument);
-  EXPECT_THROW(find_peaks(cv::Mat::zeros(1, 100, CV_32F)), std::invalid_argument);
-  EXPECT_THROW(find_peaks(cv::Mat::zeros(1, 100, CV_8UC4)), std::invalid_argument);
-  EXPECT_THROW(find_peaks(std::vector<float>{}), std::invalid_argument);
-}
-
-TEST(FindPeaks, WithImpossibleOptionsThrows) {
-  const cv::Mat row = cv::Mat::zeros(1, 100, CV_8U);
-  LinePeakOptions options;
-  options.spot_sigma_px = std::nan("");
-  EXPECT_THROW(find_peaks(row, options), std::invalid_argument);
-  options = {};
-  options.threshold = 0.0;
-  EXPECT_THROW(find_peaks(row, options), std::invalid_argument);
-  options = {};
-  options.noise.read = -1.0;
-  EXPECT_THROW(find_peaks(row, options), std::invalid_argument);
 }
 
 TEST(EstimateSpotSigma, FindsTheWidthOfTheSpotsItSees) {
