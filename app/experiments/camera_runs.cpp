@@ -35,7 +35,7 @@ std::vector<PointObservation> with_sigma(std::vector<PointObservation> observati
 }
 
 StampedPose stamped(const MotionState& state) {
-  return {state.time, state.T_world_camera, Matrix6d(state.covariance.topLeftCorner<6, 6>())};
+  return {state.time, state.T_world_body, Matrix6d(state.covariance.topLeftCorner<6, 6>())};
 }
 
 // The paper's model has none.
@@ -52,7 +52,7 @@ double paper_log_evidence(const Camera& camera, const CameraRun& run, const Moti
   for (std::size_t k = kFirst; k < run.truth.size(); ++k) {
     const MotionState predicted = predict(state, run.truth[k].time, noise);
     const std::vector<PointObservation> observations = with_sigma(run.sightings[k], sigma_px);
-    PosePrior prior{predicted.T_world_camera, predicted.covariance.topLeftCorner<6, 6>().inverse()};
+    PosePrior prior{predicted.T_world_body, predicted.covariance.topLeftCorner<6, 6>().inverse()};
     PoseUpdateOptions options;
     options.map_uncertainty = MapUncertainty::Ignored;
     const auto update = update_pose(camera, prior, observations, options);

@@ -24,13 +24,13 @@ const std::string kIterated = "iterated";
 // A start that is off by what its covariance says.
 MotionState poor_start(const CameraRun& run) {
   MotionState start = constant_velocity_start(run.truth);
-  const double distance_m = start.T_world_camera.translation().norm();
+  const double distance_m = start.T_world_body.translation().norm();
   const Matrix6d P = isotropic_noise(kPoorShare * distance_m, kPoorTurnRad);
   std::mt19937_64 random(run.number);
   std::normal_distribution<double> normal;
   Vector6d error;
   for (int i = 0; i < 6; ++i) error(i) = normal(random) * std::sqrt(P(i, i));
-  start.T_world_camera = start.T_world_camera * perturbation(error);
+  start.T_world_body = start.T_world_body * perturbation(error);
   start.covariance.topLeftCorner<6, 6>() = P;
   return start;
 }

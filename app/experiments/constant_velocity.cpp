@@ -10,7 +10,7 @@ namespace alidade {
 namespace {
 
 StampedPose stamped(const MotionState& state) {
-  return {state.time, state.T_world_camera, Matrix6d(state.covariance.topLeftCorner<6, 6>())};
+  return {state.time, state.T_world_body, Matrix6d(state.covariance.topLeftCorner<6, 6>())};
 }
 
 }  // namespace
@@ -52,7 +52,7 @@ FrameUpdate iterated_update(const Camera& camera) {
   return [camera, options](const MotionState& predicted, std::span<const PointObservation> observations) {
     const std::vector<PointObservation> apart =
         apart_from(predicted.map_offset, {observations.begin(), observations.end()});
-    const PosePrior prior{predicted.T_world_camera, covariance_in_map(predicted).inverse()};
+    const PosePrior prior{predicted.T_world_body, covariance_in_map(predicted).inverse()};
     const auto update = update_pose(camera, prior, apart, options);
     return update ? absorb(predicted, update->sightings) : predicted;
   };

@@ -5,27 +5,32 @@
 #include <vector>
 
 #include "marker1d/body_readings.h"
+#include "marker1d/body_update.h"
 
 namespace alidade {
 
 struct BodyStartOptions {
-  double gate_chi2 = 20.0;      ///< as in BodyUpdateOptions
-  double most_speed_m_s = 1.0;  ///< of the body while readings of different times are taken for one moment's
-  double least_share = 0.5;     ///< of the readings that must fit
+  BodyUpdateOptions update;
+  double speed_m_s = 2.0;     ///< standard deviations of a motion of which nothing is known
+  double rate_rad_s = 6.0;
+  double least_share = 0.5;   ///< of the readings that must fit
+  /// Odds, as a natural logarithm, against a pose that is left out beside a better one.
+  double least_log_odds = 18.0;
 };
 
-/// A pose that may be the body's.
+/// A state that may be the body's, from readings alone.
 struct BodyCandidate {
-  Eigen::Isometry3d T_world_body = Eigen::Isometry3d::Identity();
-  Matrix6d covariance = Matrix6d::Zero();  ///< of the right perturbation, m and rad
-  double chi2 = 0.0;
+  MotionState state;
+  double log_evidence = 0.0;
+  std::vector<bool> is_inlier;  ///< one per reading
   int inlier_count = 0;
 };
 
-/// The poses that readings near one moment leave possible, most probable first: none where they do not determine it (or
-/// contradict each other), one where it is certain, several where it is ambiguous. Nothing is known beforehand.
+/// The states that readings near one moment leave possible, most probable first: none where they do not determine the
+/// pose or contradict each other, one where it is certain, several where it is ambiguous. Nothing is known beforehand
+/// but that the body does not move faster than the options say.
 std::vector<BodyCandidate> start_body(const DetectorArray& detectors, const RigidBody& body,
-                                      std::span<const LineReading> readings, Timestamp time,
+                                      std::span<const LineReading> readings, Timestamp time, double variance_factor,
                                       const BodyStartOptions& options = {});
 
 }  // namespace alidade

@@ -8,6 +8,8 @@
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
+#include "geometry/plane_pose.h"
+
 namespace alidade {
 namespace {
 
@@ -18,23 +20,6 @@ constexpr int kMostMisfits = 5;
 
 double largest_sigma(const Eigen::Matrix3d& covariance) {
   return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly).eigenvalues()(2));
-}
-
-// How many directions of the pose are known to better than `sigma_m`, turns counted at the body's radius.
-int determined_directions(const Matrix6d& information, double radius_m, double sigma_m) {
-  Vector6d unit;
-  unit << 1, 1, 1, 1 / radius_m, 1 / radius_m, 1 / radius_m;
-  const Matrix6d in_m = unit.asDiagonal() * information * unit.asDiagonal();
-  const auto values = Eigen::SelfAdjointEigenSolver<Matrix6d>(in_m, Eigen::EigenvaluesOnly).eigenvalues();
-  return static_cast<int>((values.array() > 1.0 / (sigma_m * sigma_m)).count());
-}
-
-double radius(const RigidBody& body) {
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  for (const BodyMarker& m : body.markers) centre += m.p_body / static_cast<double>(body.markers.size());
-  double largest = 1e-6;
-  for (const BodyMarker& m : body.markers) largest = std::max(largest, (m.p_body - centre).norm());
-  return largest;
 }
 
 // Whether two states cannot be told apart.
@@ -90,8 +75,7 @@ std::optional<BodyEstimate> BodyTracker::follow(Timestamp time, std::span<const 
     return std::nullopt;
   }
   BodyEstimate estimate = answer(time);
-  estimate.determined = determined_directions(update.readings.information.topLeftCorner<6, 6>(), radius(body_),
-                                              options_.most_position_sigma_m);
+  estimate.determined = determined_directions(update.readings.information.topLeftCorner<6, 6>());
   estimate.is_inlier = update.is_inlier;
   estimate.inlier_count = update.inlier_count;
   estimate.chi2 = update.chi2;
@@ -133,10 +117,8 @@ BodyEstimate BodyTracker::answer(Timestamp time) const {
 BodyEstimate BodyTracker::start(Timestamp time) {
   misfits_ = 0;
   const std::vector<LineReading> readings(recent_.begin(), recent_.end());
-  for (const BodyCandidate& c : start_body(detectors_, body_, readings, time, options_.start)) {
-    const MotionState state = resting_state(time, c.T_world_body, c.covariance, options_.start_speed_m_s,
-                                            options_.start_rate_rad_s);
-    if (is_sure(state)) hypotheses_.push_back({state, -0.5 * c.chi2});
+  for (BodyCandidate& c : start_body(detectors_, body_, readings, time, variance_factor_, options_.start)) {
+    if (is_sure(c.state)) hypotheses_.push_back({std::move(c.state), c.log_evidence});
   }
   BodyEstimate estimate = answer(time);
   estimate.is_start = true;

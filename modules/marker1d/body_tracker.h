@@ -18,8 +18,6 @@ struct BodyTrackerOptions {
   double start_window_s = 0.05;      ///< readings that a start may be made of
   double most_position_sigma_m = 0.1;   ///< a body that is less sure along any axis is lost
   double most_rotation_sigma_rad = 0.5;
-  double start_speed_m_s = 2.0;      ///< standard deviation of what nothing is known of, at a start
-  double start_rate_rad_s = 6.0;
   bool learn_reading_noise = true;   ///< correct the detectors' sigma by the residuals
   bool learn_motion = true;          ///< the motion's noise from the motion so far, by innovation likelihood
 };

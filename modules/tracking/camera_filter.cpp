@@ -64,7 +64,7 @@ std::optional<FilterStep> filter_step(const Camera& camera, const MotionState& s
   for (const MotionMode& mode : options.motion) {
     P += noise_covariance(state, widest, mode.noise).topLeftCorner<6, 6>();
   }
-  auto measured = measure(camera, {widest.T_world_camera, P.inverse()}, noise, observations, options);
+  auto measured = measure(camera, {widest.T_world_body, P.inverse()}, noise, observations, options);
   if (!measured) return std::nullopt;
   MotionStep motion = absorb(state, time, options.motion, measured->update.sightings);
   return FilterStep{std::move(motion), std::move(measured->update), measured->noise};

@@ -68,7 +68,7 @@ FrameReport CameraTracker::wait(const ImageFrame& frame, const FlowImage& flow) 
   adopt(std::move(*started), frame);
   report.reason.clear();
   report.state = FrameState::Tracked;
-  report.T_world_camera = motion_.state().T_world_camera;
+  report.T_world_camera = motion_.state().T_world_body;
   report.covariance = motion_.state().covariance.topLeftCorner<6, 6>();
   report.is_keyframe = true;
   return report;
@@ -112,7 +112,7 @@ FrameReport CameraTracker::track(const ImageFrame& frame, const FlowImage& flow)
     }
   } else {
     if (has_pose_ && missed_ == 0) {
-      attempt = localiser.follow({previous_, motion_.state().T_world_camera, tracks_}, predicted, flow);
+      attempt = localiser.follow({previous_, motion_.state().T_world_body, tracks_}, predicted, flow);
     }
     if (!localiser.is_believable(attempt) && has_pose_) attempt = localiser.search(predicted, frame.grey);
     if (!localiser.is_believable(attempt)) {
@@ -169,7 +169,7 @@ FrameReport CameraTracker::accept(const ImageFrame& frame, const MotionState& pr
   report.name = frame.name;
   report.state = FrameState::Tracked;
   const MotionState& now = options_.pose == PoseMethod::Ekf ? motion_.estimate() : motion_.state();
-  report.T_world_camera = now.T_world_camera;
+  report.T_world_camera = now.T_world_body;
   report.covariance = now.covariance.topLeftCorner<6, 6>();
   report.likelihood = update.sightings;
   report.chi2_per_dof = update.chi2_per_dof;
@@ -197,7 +197,7 @@ void CameraTracker::move_on(const ImageFrame& frame, const Localisation& attempt
 
 std::vector<FrameExpectation> CameraTracker::expectations(const MotionState& predicted,
                                                           const std::vector<FoundPoint>& found) const {
-  const PoseBelief belief{predicted.T_world_camera, predicted.covariance.topLeftCorner<6, 6>()};
+  const PoseBelief belief{predicted.T_world_body, predicted.covariance.topLeftCorner<6, 6>()};
   std::vector<FrameExpectation> result;
   for (const FoundPoint& f : found) {
     const auto expected = expect(camera_, belief, live_.map.points[static_cast<std::size_t>(f.point)], sigma_px_);
@@ -218,7 +218,7 @@ FrameReport CameraTracker::lose(const ImageFrame& frame, const MotionState& pred
   report.reason = "too few map points found again (blur, darkness, or a part of the scene that the map lacks)";
   if (has_pose_) {
     motion_.pass(frame.time);
-    report.T_world_camera = predicted.T_world_camera;
+    report.T_world_camera = predicted.T_world_body;
     report.covariance = predicted.covariance.topLeftCorner<6, 6>();
   }
   return report;
@@ -277,11 +277,11 @@ PoseUpdate CameraTracker::estimate_with_map(Timestamp time, const MotionState& p
     const SlamFrame frame{time, motion_.noise(), inliers_of(attempt.found, update), sigma_px_};
     slam_ = follow(camera_, *slam_, live_.map, living_, frame, options_.slam_points);
   }
-  if (!slam_ || !slam_->state.camera.T_world_camera.matrix().allFinite()) {  // this frame starts it
+  if (!slam_ || !slam_->state.camera.T_world_body.matrix().allFinite()) {  // this frame starts it
     slam_ = SlamTrack{slam_state(absorb(predicted, update.T_world_camera, update.covariance)), {}};
     slam_->state.camera.time = time;
   }
-  update.T_world_camera = slam_->state.camera.T_world_camera;
+  update.T_world_camera = slam_->state.camera.T_world_body;
   update.covariance = slam_->state.covariance.topLeftCorner<6, 6>();
   return update;
 }

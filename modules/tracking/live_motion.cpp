@@ -71,7 +71,7 @@ void LiveMotion::pass(Timestamp time) {
 }
 
 void LiveMotion::correct(const Eigen::Isometry3d& T_world_camera) {
-  state_.T_world_camera = estimate_.T_world_camera = T_world_camera;
+  state_.T_world_body = estimate_.T_world_body = T_world_camera;
 }
 
 void LiveMotion::restart(MotionState estimate) {

@@ -45,7 +45,7 @@ Localisation Localiser::follow(const FollowedPoints& last, const MotionState& pr
   for (const FoundPoint& track : last.points) {
     const Eigen::Vector3d& p = map_.points[static_cast<std::size_t>(track.point)].p_world;
     const auto before = project(camera_, last.T_world_camera.inverse() * p);
-    const auto after = project(camera_, predicted.T_world_camera.inverse() * p);
+    const auto after = project(camera_, predicted.T_world_body.inverse() * p);
     from.push_back(track.pixel);
     // The difference of two projections leaves out what the map and the last pose are off by.
     guesses.push_back(before && after ? track.pixel + after->pixel - before->pixel : track.pixel);
@@ -69,7 +69,7 @@ Localisation Localiser::search(const MotionState& predicted, const cv::Mat& grey
   near.sigma_px = sigma_px_;
   const std::vector<bool> none_taken(static_cast<std::size_t>(attempt.features->size()), false);
   attempt.found =
-      search_points(camera_, map_, points_, {predicted.T_world_camera, predicted.covariance.topLeftCorner<6, 6>()},
+      search_points(camera_, map_, points_, {predicted.T_world_body, predicted.covariance.topLeftCorner<6, 6>()},
                     *attempt.features, none_taken, near);
   attempt.update = estimate(predicted, attempt.found, true);
   if (!is_believable(attempt)) return attempt;
@@ -94,7 +94,7 @@ Localisation Localiser::relocalise(const MotionState& predicted, const cv::Mat& 
   if (!pose) return attempt;
   for (int i : pose->inliers) attempt.found.push_back(matches[static_cast<std::size_t>(i)]);
   MotionState start = predicted;
-  start.T_world_camera = pose->T_world_camera;
+  start.T_world_body = pose->T_world_camera;
   attempt.update = estimate(start, attempt.found, false);
   if (!attempt.update) return attempt;
   return widen(start, std::move(attempt));
@@ -129,7 +129,7 @@ Localisation Localiser::anchor_in_features(const MotionState& predicted, const c
   found.insert(found.end(), more.begin(), more.end());
 
   MotionState start = predicted;
-  if (!attempt.used_prior) start.T_world_camera = attempt.update->T_world_camera;
+  if (!attempt.used_prior) start.T_world_body = attempt.update->T_world_camera;
   const auto update = estimate(start, found, attempt.used_prior);
   if (!update || update->inlier_count < options_.least_inliers) return attempt;
   if (map_is_known_ && update->inlier_count < attempt.update->inlier_count / 3) return attempt;  // a blurred image
@@ -174,7 +174,7 @@ Localisation Localiser::widen(const MotionState& predicted, Localisation first) 
   auto found = search_points(camera_, map_, points_, loosely(*wide.update), *wide.features, none_taken, near);
   if (found.size() < wide.found.size()) return wide;
   MotionState start = predicted;
-  if (!wide.used_prior) start.T_world_camera = wide.update->T_world_camera;
+  if (!wide.used_prior) start.T_world_body = wide.update->T_world_camera;
   const auto update = estimate(start, found, wide.used_prior);
   if (!update || update->inlier_count < wide.update->inlier_count) return wide;
   wide.found = std::move(found);

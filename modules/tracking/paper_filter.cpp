@@ -14,7 +14,7 @@ using Jacobian13x12 = Eigen::Matrix<double, 13, 12>;
 // q is world → camera and is multiplied on the right by the turn, so the camera turns by -ω about world axes:
 // ω_paper = -R_world_camera ω_camera.
 Jacobian13x12 jacobian_of_paper_state(const MotionState& state) {
-  const Eigen::Matrix3d R = state.T_world_camera.linear();
+  const Eigen::Matrix3d R = state.T_world_body.linear();
   const Eigen::Quaterniond q(R.transpose());
   Jacobian13x12 J = Jacobian13x12::Zero();
   J.block<3, 3>(0, 0) = R;
@@ -44,10 +44,10 @@ Eigen::Matrix<double, 3, 4> jacobian_of_rotated(const Eigen::Quaterniond& q, con
 }  // namespace
 
 PaperState to_paper_state(const MotionState& state) {
-  const Eigen::Matrix3d R = state.T_world_camera.linear();
+  const Eigen::Matrix3d R = state.T_world_body.linear();
   const Eigen::Quaterniond q(R.transpose());
   PaperState paper;
-  paper.s << state.T_world_camera.translation(), q.w(), q.x(), q.y(), q.z(), state.v_world, -R * state.omega_body;
+  paper.s << state.T_world_body.translation(), q.w(), q.x(), q.y(), q.z(), state.v_world, -R * state.omega_body;
   const Jacobian13x12 J = jacobian_of_paper_state(state);
   paper.P = J * state.covariance.topLeftCorner<12, 12>() * J.transpose();
   return paper;
@@ -57,8 +57,8 @@ MotionState from_paper_state(const PaperState& paper, Timestamp time) {
   MotionState state;
   state.time = time;
   const Eigen::Matrix3d R = quaternion_of(paper.s).normalized().toRotationMatrix().transpose();
-  state.T_world_camera.linear() = R;
-  state.T_world_camera.translation() = paper.s.head<3>();
+  state.T_world_body.linear() = R;
+  state.T_world_body.translation() = paper.s.head<3>();
   state.v_world = paper.s.segment<3>(7);
   state.omega_body = -R.transpose() * paper.s.tail<3>();
   // The 13×12 Jacobian has full column rank: its pseudo-inverse drops the length of q and inverts the rest.

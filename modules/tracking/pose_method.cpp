@@ -14,7 +14,7 @@ namespace {
 
 PosePrior prior_of(const MotionState& predicted, bool use_prior) {
   PosePrior prior;
-  prior.T_world_camera = predicted.T_world_camera;
+  prior.T_world_camera = predicted.T_world_body;
   if (use_prior) prior.information = predicted.covariance.topLeftCorner<6, 6>().inverse();
   return prior;
 }
@@ -40,8 +40,8 @@ std::optional<PoseUpdate> from_frame_alone(PnpMethod method, const Camera& camer
 }
 
 std::optional<PoseUpdate> from_filter(const MotionState& state, PoseUpdate update) {
-  if (!state.T_world_camera.matrix().allFinite()) return std::nullopt;
-  update.T_world_camera = state.T_world_camera;
+  if (!state.T_world_body.matrix().allFinite()) return std::nullopt;
+  update.T_world_camera = state.T_world_body;
   update.covariance = state.covariance.topLeftCorner<6, 6>();
   return update;
 }

@@ -22,7 +22,7 @@ Matrix6d learned_pose_noise(const Matrix6d& R, std::span<const FrameLikelihood> 
   int count = 0;
   for (std::size_t k = 0; k < frames.size(); ++k) {
     if (!is_seen(frames[k])) continue;
-    const PoseLikelihood z = about(states[k].state.T_world_camera, frames[k].sightings);
+    const PoseLikelihood z = about(states[k].state.T_world_body, frames[k].sightings);
     const Eigen::PartialPivLU<Matrix6d> blur(Matrix6d::Identity() + z.information * R);
     // E and covariance of the common error o: y = Λ⁻¹g is measured of o + noise, about a state of covariance P.
     const Matrix6d weight = R * blur.solve(z.information);

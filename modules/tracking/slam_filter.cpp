@@ -100,7 +100,7 @@ SlamState predict(const SlamState& state, Timestamp time, const MotionNoise& noi
 }
 
 std::optional<SlamMeasurement> expected_measurement(const Camera& camera, const SlamState& state, int point) {
-  const Eigen::Isometry3d T_camera_world = state.camera.T_world_camera.inverse();
+  const Eigen::Isometry3d T_camera_world = state.camera.T_world_body.inverse();
   const Eigen::Vector3d p_camera = T_camera_world * state.points.at(static_cast<std::size_t>(point));
   const auto projection = project(camera, p_camera);
   if (!projection) return std::nullopt;

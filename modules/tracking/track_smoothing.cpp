@@ -80,7 +80,7 @@ void smooth(Reports segment, const TrackSmoothingOptions& options) {
   const std::vector<MotionState> states = smoothed_states(steps, options.lag);
   for (std::size_t i = 0; i < segment.size(); ++i) {
     if (segment[i].is_keyframe) continue;
-    segment[i].T_world_camera = states[i].T_world_camera;
+    segment[i].T_world_camera = states[i].T_world_body;
     segment[i].covariance = states[i].covariance.topLeftCorner<6, 6>();
   }
 }

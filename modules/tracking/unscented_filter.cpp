@@ -54,9 +54,9 @@ PoseLikelihood unscented_likelihood(const Camera& camera, const MotionState& pre
   const double shift_weight = options.beta - options.alpha * options.alpha;
   Eigen::Matrix<double, kSize, kPairs> xi;
   xi << spread * Matrix6d(P.llt().matrixL()), -spread * Matrix6d(P.llt().matrixL());
-  SigmaPoses poses{predicted.T_world_camera.inverse(), {}};
+  SigmaPoses poses{predicted.T_world_body.inverse(), {}};
   for (const auto& x : xi.colwise()) {
-    poses.T_sigma_world.push_back((predicted.T_world_camera * perturbation(x)).inverse());
+    poses.T_sigma_world.push_back((predicted.T_world_body * perturbation(x)).inverse());
   }
   // Sums about the mean's own pixel, so that no weight is negative: with D the pixels' differences from it, w their
   // weight and s = w Σ D the mean's shift, P_zz = w D Dᵀ + (beta - alpha²) s sᵀ + R = Z Zᵀ + R. With P = X Xᵀ and
@@ -79,7 +79,7 @@ PoseLikelihood unscented_likelihood(const Camera& camera, const MotionState& pre
   const auto factor = M.ldlt();
   const Matrix6d information = Matrix6d(X * factor.solve(X.transpose())).ldlt().solve(Matrix6d::Identity());
   PoseLikelihood likelihood;
-  likelihood.T_world_camera = predicted.T_world_camera;
+  likelihood.T_world_body = predicted.T_world_body;
   likelihood.gradient = information * (X * factor.solve(innovation));
   likelihood.information = information - P.ldlt().solve(Matrix6d::Identity());
   likelihood.information = 0.5 * (likelihood.information + likelihood.information.transpose()).eval();

@@ -46,7 +46,7 @@ TEST(MoveMotionState, IsUndoneByTheErrorBetween) {
   for (double& value : error) value = random.normal(0.3);
   const MotionState moved = moved_by(state, error);
   EXPECT_LT((error_between(state, moved) - error).norm(), 1e-12);
-  EXPECT_LT((moved.T_world_camera.translation() - state.T_world_camera * error.head<3>()).norm(), 1e-12);
+  EXPECT_LT((moved.T_world_body.translation() - state.T_world_body * error.head<3>()).norm(), 1e-12);
   EXPECT_LT((moved.alpha_body - state.alpha_body - error.tail<3>()).norm(), 1e-12);
 }
 
@@ -54,11 +54,11 @@ TEST(PredictMotion, MovesWithConstantVelocity) {
   MotionState state;
   state.v_world = {1, -2, 0.5};
   state.omega_body = {0, 0, 0.4};
-  state.T_world_camera.linear() = exp_so3(Eigen::Vector3d(0.3, 0, 0));
+  state.T_world_body.linear() = exp_so3(Eigen::Vector3d(0.3, 0, 0));
   const MotionState next = predict(state, after(state, 0.5), {});
-  EXPECT_LT((next.T_world_camera.translation() - Eigen::Vector3d(0.5, -1, 0.25)).norm(), 1e-12);
-  const Eigen::Matrix3d R = state.T_world_camera.linear() * exp_so3(Eigen::Vector3d(0, 0, 0.2));
-  EXPECT_LT((next.T_world_camera.linear() - R).norm(), 1e-12);
+  EXPECT_LT((next.T_world_body.translation() - Eigen::Vector3d(0.5, -1, 0.25)).norm(), 1e-12);
+  const Eigen::Matrix3d R = state.T_world_body.linear() * exp_so3(Eigen::Vector3d(0, 0, 0.2));
+  EXPECT_LT((next.T_world_body.linear() - R).norm(), 1e-12);
   EXPECT_EQ(next.v_world, state.v_world);
   EXPECT_EQ(next.omega_body, state.omega_body);
   EXPECT_EQ(next.time, after(state, 0.5));
@@ -72,8 +72,8 @@ TEST(PredictMotion, GathersSpeedWithConstantAcceleration) {
   const MotionState next = predict(state, after(state, 0.5), {});
   EXPECT_LT((next.v_world - Eigen::Vector3d(0, 1, 0)).norm(), 1e-12);
   EXPECT_LT((next.omega_body - Eigen::Vector3d(0.4, 0, 0)).norm(), 1e-12);
-  EXPECT_LT((next.T_world_camera.translation() - Eigen::Vector3d(0, 0.25, 0)).norm(), 1e-12);
-  EXPECT_LT((next.T_world_camera.linear() - exp_so3(Eigen::Vector3d(0.1, 0, 0))).norm(), 1e-12);
+  EXPECT_LT((next.T_world_body.translation() - Eigen::Vector3d(0, 0.25, 0)).norm(), 1e-12);
+  EXPECT_LT((next.T_world_body.linear() - exp_so3(Eigen::Vector3d(0.1, 0, 0))).norm(), 1e-12);
   EXPECT_EQ(next.a_world, state.a_world);
   EXPECT_EQ(next.alpha_body, state.alpha_body);
 }
@@ -171,7 +171,7 @@ TEST(PredictMotion, StaysForAnEarlierTime) {
   const MotionState state = test::random_state(random, 0.1);
   const MotionNoise noise{isotropic_noise(1, 1), isotropic_noise(1, 1)};
   const MotionState same = predict(state, after(state, -1.0), noise);
-  EXPECT_LT((same.T_world_camera.matrix() - state.T_world_camera.matrix()).norm(), 1e-12);
+  EXPECT_LT((same.T_world_body.matrix() - state.T_world_body.matrix()).norm(), 1e-12);
   EXPECT_LT((same.covariance - state.covariance).norm(), 1e-12);
   EXPECT_EQ(same.time, state.time);
 }
@@ -196,7 +196,7 @@ void expect_the_kalman_update(const MotionState& predicted, const Eigen::Matrix<
                               const Eigen::Matrix<double, kRows, kRows>& R, const Eigen::Matrix<double, kRows, 1>& y) {
   const Eigen::Matrix<double, kRows, 6> WH = R.inverse() * H_pose;
   const MotionState state =
-      absorb(predicted, PoseLikelihood{predicted.T_world_camera, H_pose.transpose() * WH, WH.transpose() * y});
+      absorb(predicted, PoseLikelihood{predicted.T_world_body, H_pose.transpose() * WH, WH.transpose() * y});
 
   Eigen::Matrix<double, kRows, 18> H = Eigen::Matrix<double, kRows, 18>::Zero();
   H.template leftCols<6>() = H_pose;
@@ -247,11 +247,11 @@ TEST(AbsorbSightings, TakesOverThePoseOfSightingsThatAreFarSurer) {
   test::RandomGeometry random(kSeed);
   MotionState predicted = test::random_state(random, 1e3);
   PoseLikelihood sightings;
-  sightings.T_world_camera = predicted.T_world_camera * perturbation(draw(random, 0.5, 0.3));
+  sightings.T_world_body = predicted.T_world_body * perturbation(draw(random, 0.5, 0.3));
   const Matrix6d R = test::random_covariance<6>(random, 0.1);
   sightings.information = R.inverse();
   const MotionState state = absorb(predicted, sightings);
-  EXPECT_LT(difference(sightings.T_world_camera, state.T_world_camera).norm(), 1e-5);
+  EXPECT_LT(difference(sightings.T_world_body, state.T_world_body).norm(), 1e-5);
   EXPECT_LT((state.covariance.topLeftCorner<6, 6>() - R).cwiseAbs().maxCoeff(), 1e-5);
 }
 
@@ -261,9 +261,9 @@ TEST(AbsorbSightings, DoesNotDependOnThePoseThatTheyAreWrittenAbout) {
   const MotionState predicted = test::random_state(random, 0.1);
   const Matrix6d W = test::random_covariance<6>(random, 0.1).inverse();
   const Vector6d g = W * draw(random, 1e-4, 1e-4), xi = draw(random, 1e-4, 1e-4);
-  const MotionState here = absorb(predicted, PoseLikelihood{predicted.T_world_camera, W, g});
+  const MotionState here = absorb(predicted, PoseLikelihood{predicted.T_world_body, W, g});
   const MotionState there =
-      absorb(predicted, PoseLikelihood{predicted.T_world_camera * perturbation(xi), W, g - W * xi});
+      absorb(predicted, PoseLikelihood{predicted.T_world_body * perturbation(xi), W, g - W * xi});
   EXPECT_GT(error_between(predicted, here).norm(), 1e-4);
   EXPECT_LT(error_between(here, there).norm(), 1e-6);
 }
@@ -282,8 +282,8 @@ Eigen::Matrix<double, 6, 24> jacobian_in_map(const MotionState& state) {
   H.leftCols<6>().setIdentity();
   for (int i = 0; i < 6; ++i) {
     const Vector6d step = 1e-6 * Vector6d::Unit(i);
-    H.col(18 + i) = (difference(state.T_world_camera, shown_by(state.map_offset, step, state.T_world_camera)) -
-                     difference(state.T_world_camera, shown_by(state.map_offset, -step, state.T_world_camera))) /
+    H.col(18 + i) = (difference(state.T_world_body, shown_by(state.map_offset, step, state.T_world_body)) -
+                     difference(state.T_world_body, shown_by(state.map_offset, -step, state.T_world_body))) /
                     2e-6;
   }
   return H;
@@ -317,7 +317,7 @@ TEST(AbsorbSightings, ConsidersTheMapOffset) {
     const MotionState predicted = random_state_with_offset(random, P);
     const Matrix6d R = test::random_covariance<6>(random, 0.1);
     const Vector6d y = draw(random, 1e-4, 1e-4);
-    const PoseLikelihood sightings{predicted.T_world_camera, R.inverse(), R.inverse() * y};
+    const PoseLikelihood sightings{predicted.T_world_body, R.inverse(), R.inverse() * y};
     const MotionState state = absorb(predicted, sightings);
 
     const Eigen::Matrix<double, 6, 24> H = jacobian_in_map(predicted);
@@ -347,12 +347,12 @@ TEST(LogEvidence, IsTheDensityOfTheInnovation) {
     MotionState other = one;
     other.covariance = test::random_covariance<18>(random, 0.1);
     other.map_offset = {};
-    other.T_world_camera = one.T_world_camera * perturbation(draw(random, 0.3, 0.0));
+    other.T_world_body = one.T_world_body * perturbation(draw(random, 0.3, 0.0));
     const Matrix6d R = test::random_covariance<6>(random, 0.1);
     const Vector6d y = draw(random, 0.3, 0.3);
-    const double evidence = log_evidence(one, {one.T_world_camera, R.inverse(), R.inverse() * y}) -
-                            log_evidence(other, {one.T_world_camera, R.inverse(), R.inverse() * y});
-    const Vector6d y_other = y + difference(other.T_world_camera, one.T_world_camera);
+    const double evidence = log_evidence(one, {one.T_world_body, R.inverse(), R.inverse() * y}) -
+                            log_evidence(other, {one.T_world_body, R.inverse(), R.inverse() * y});
+    const Vector6d y_other = y + difference(other.T_world_body, one.T_world_body);
     const double expected =
         log_density(y, covariance_in_map(one) + R) - log_density(y_other, covariance_in_map(other) + R);
     EXPECT_NEAR(evidence, expected, 1e-7 * std::abs(expected)) << "seed " << kSeed << ", trial " << trial;
@@ -368,7 +368,7 @@ TEST(LogEvidence, CountsOnlyWhatTheSightingsMeasure) {
     for (double& value : H.reshaped()) value = random.normal();
     const Eigen::Matrix2d W = test::random_covariance<2>(random, 0.1).inverse();
     const Eigen::Vector2d y(random.normal(0.3), random.normal(0.3));
-    const PoseLikelihood sightings{predicted.T_world_camera, H.transpose() * W * H, H.transpose() * W * y};
+    const PoseLikelihood sightings{predicted.T_world_body, H.transpose() * W * H, H.transpose() * W * y};
     double evidence[2], expected[2];
     for (int k = 0; k < 2; ++k) {
       const Eigen::Matrix2d S = H * predicted.covariance.topLeftCorner<6, 6>() * H.transpose() + W.inverse();
@@ -392,7 +392,7 @@ TEST(AbsorbPose, IsTheKalmanUpdate) {
     const Matrix18d P_after = P - K * P.topRows<6>();
     const Vector18d x = K * y;
     const MotionState state =
-        absorb(predicted, predicted.T_world_camera * perturbation(x.head<6>()), P_after.topLeftCorner<6, 6>());
+        absorb(predicted, predicted.T_world_body * perturbation(x.head<6>()), P_after.topLeftCorner<6, 6>());
     EXPECT_LT((error_between(predicted, state) - x).norm(), 1e-8) << "seed " << kSeed << ", trial " << trial;
     EXPECT_LT((state.covariance - P_after).cwiseAbs().maxCoeff(), 1e-9);
     EXPECT_EQ(state.covariance, Matrix18d(state.covariance.transpose()));
@@ -429,7 +429,7 @@ TEST(RestingState, KnowsNothingOfTheVelocities) {
   const Eigen::Isometry3d T = random.pose();
   const Matrix6d P = 0.5 * Matrix6d::Identity();
   const MotionState state = resting_state(Timestamp(from_seconds(3)), T, P, 2.0, 0.3);
-  EXPECT_EQ(state.T_world_camera.matrix(), T.matrix());
+  EXPECT_EQ(state.T_world_body.matrix(), T.matrix());
   EXPECT_EQ(to_seconds(state.time.time_since_epoch()), 3.0);
   EXPECT_TRUE(state.v_world.isZero() && state.omega_body.isZero());
   EXPECT_TRUE(state.a_world.isZero() && state.alpha_body.isZero());

@@ -19,7 +19,7 @@ Eigen::Matrix<double, kSize, kSize> random_covariance(RandomGeometry& random, do
 /// `sigma` scales the standard deviations.
 inline MotionState random_state(RandomGeometry& random, double sigma) {
   MotionState state;
-  state.T_world_camera = random.pose();
+  state.T_world_body = random.pose();
   state.v_world = random.vector();
   state.omega_body = random.vector();
   state.a_world = random.vector();
@@ -51,9 +51,9 @@ inline MotionState jumped(MotionState state, const Vector6d& jump) {
 inline MotionState driven(const MotionState& state, double dt, const Vector6d& acceleration, const Vector6d& jerk) {
   MotionState next = state;
   next.time = state.time + from_seconds(dt);
-  next.T_world_camera.translation() +=
+  next.T_world_body.translation() +=
       dt * state.v_world + dt * dt * (state.a_world / 2 + acceleration.head<3>()) + dt * dt * dt / 6 * jerk.head<3>();
-  next.T_world_camera.linear() *=
+  next.T_world_body.linear() *=
       exp_so3(dt * state.omega_body + dt * dt * (state.alpha_body / 2 + acceleration.tail<3>()) +
               dt * dt * dt / 6 * jerk.tail<3>());
   next.v_world += dt * (state.a_world + acceleration.head<3>()) + dt * dt / 2 * jerk.head<3>();

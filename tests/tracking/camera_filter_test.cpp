@@ -79,7 +79,7 @@ TEST_F(JumpInVelocity, IsFollowedInTheFrameWhereItBegins) {
   EXPECT_LT(step.motion.mode_weight.front(), 1e-3);
   EXPECT_NEAR((step.motion.state.v_world - before_.v_world).dot(jump_) / jump_.squaredNorm(), 1.0, 0.15);
   const MotionState now = test::driven(truth_, simulated_.dt, Vector6d::Zero(), Vector6d::Zero());
-  const Vector6d off = difference(step.motion.state.T_world_camera, now.T_world_camera);
+  const Vector6d off = difference(step.motion.state.T_world_body, now.T_world_body);
   EXPECT_LT(off.dot(step.motion.state.covariance.topLeftCorner<6, 6>().ldlt().solve(off)), 22.5) << "6 dof, 99.9 %";
 }
 
@@ -97,7 +97,7 @@ TEST_F(JumpInVelocity, IsMissedByNoiseOfOneStrength) {
   options_.motion = {{options_.motion.front().noise, 1.0}};
   const FilterStep step = step_to(truth_);
   const MotionState now = test::driven(truth_, simulated_.dt, Vector6d::Zero(), Vector6d::Zero());
-  const Vector6d off = difference(step.motion.state.T_world_camera, now.T_world_camera);
+  const Vector6d off = difference(step.motion.state.T_world_body, now.T_world_body);
   EXPECT_GT(off.dot(step.motion.state.covariance.topLeftCorner<6, 6>().ldlt().solve(off)), 22.5) << "6 dof, 99.9 %";
 }
 
@@ -179,10 +179,10 @@ TEST_F(FilterStepTest, GivesTheExactPoseOnExactSightings) {
   simulated_.noise_px = 0.0;
   const MotionState truth = moved_by(before_, test::drawn(random_, before_.covariance));
   const auto frame = simulated_.frame(simulated_.next(truth, random_), random_);
-  EXPECT_GT(difference(before_.T_world_camera, truth.T_world_camera).norm(), 0.01);
+  EXPECT_GT(difference(before_.T_world_body, truth.T_world_body).norm(), 0.01);
   const auto step = filter_step(simulated_.camera, before_, {}, next_time(), frame.observations, options);
   ASSERT_TRUE(step);
-  EXPECT_LT(difference(frame.truth.T_world_camera, step->motion.state.T_world_camera).norm(), 1e-9);
+  EXPECT_LT(difference(frame.truth.T_world_body, step->motion.state.T_world_body).norm(), 1e-9);
 }
 
 TEST_F(FilterStepTest, IsEmptyWithTooFewSightings) {

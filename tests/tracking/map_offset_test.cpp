@@ -133,7 +133,7 @@ double mean_nees_of_pose(bool is_considered) {
     const auto steps = test::filtered(simulated, belief, frames, test::options_as_simulated(simulated.noise));
     if (steps.size() != frames.size()) return -1.0;
     const MotionState& state = steps.back().state;
-    const Vector6d off = difference(state.T_world_camera, frames.back().truth.T_world_camera);
+    const Vector6d off = difference(state.T_world_body, frames.back().truth.T_world_body);
     sum += off.dot(state.covariance.topLeftCorner<6, 6>().ldlt().solve(off));
   }
   return sum / kTrials;

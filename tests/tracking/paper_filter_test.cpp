@@ -21,13 +21,13 @@ TEST(PaperState, IsTheStateInOtherCoordinates) {
   const MotionState state = test::random_unaccelerated_state(random, 0.1);
   const Vector13d s = to_paper_state(state).s;
   const Eigen::Matrix3d R_camera_world = Eigen::Quaterniond(s(3), s(4), s(5), s(6)).toRotationMatrix();
-  EXPECT_EQ(s.head<3>(), state.T_world_camera.translation());
-  EXPECT_LT((R_camera_world - state.T_world_camera.linear().transpose()).norm(), 1e-12);
+  EXPECT_EQ(s.head<3>(), state.T_world_body.translation());
+  EXPECT_LT((R_camera_world - state.T_world_body.linear().transpose()).norm(), 1e-12);
   EXPECT_EQ(s.segment<3>(7), state.v_world);
   // The paper turns its quaternion by q ⊗ q{ω Δt}: world → camera after a short time.
   const Eigen::Matrix3d turned = R_camera_world * exp_so3(1e-3 * s.tail<3>());
   const MotionState next = predict(state, state.time + from_seconds(1e-3), {});
-  EXPECT_LT((turned - next.T_world_camera.linear().transpose()).norm(), 1e-9);
+  EXPECT_LT((turned - next.T_world_body.linear().transpose()).norm(), 1e-9);
 }
 
 TEST(PaperState, LeadsBackToTheState) {
@@ -66,7 +66,7 @@ TEST(PaperMeasurementJacobian, IsTheDerivative) {
   for (int trial = 0; trial < 10; ++trial) {
     const MotionState state = test::random_unaccelerated_state(random, 0.1);
     const Eigen::Vector3d p_camera(random.uniform(-0.8, 0.8), random.uniform(-0.8, 0.8), random.uniform(2, 4));
-    const Eigen::Vector3d p_world = state.T_world_camera * p_camera;
+    const Eigen::Vector3d p_world = state.T_world_body * p_camera;
     const Vector13d s = to_paper_state(state).s;
     const auto H = paper_measurement_jacobian(camera, s, p_world);
     for (int i = 0; i < 13; ++i) {
@@ -90,7 +90,7 @@ class PaperFilter : public testing::Test {
     predicted_ = predict(predicted_, predicted_.time + from_seconds(0.03), {isotropic_noise(1, 1), Matrix6d::Zero()});
     Vector6d off;
     off << 0.005, -0.0025, 0.005, 0.001, 0.0015, -0.001;
-    predicted_.T_world_camera = predicted_.T_world_camera * perturbation(off);
+    predicted_.T_world_body = predicted_.T_world_body * perturbation(off);
   }
 
   test::RandomGeometry random_{kSeed};
@@ -104,12 +104,12 @@ TEST_F(PaperFilter, IsNearTheIteratedUpdate) {
   const auto observations = test::observations_of(map_, 0);
   PoseUpdateOptions options;
   options.map_uncertainty = MapUncertainty::Ignored;
-  const PosePrior prior{predicted_.T_world_camera, predicted_.covariance.topLeftCorner<6, 6>().inverse()};
+  const PosePrior prior{predicted_.T_world_body, predicted_.covariance.topLeftCorner<6, 6>().inverse()};
   const auto exact = update_pose(camera_, prior, observations, options);
   ASSERT_TRUE(exact);
   ASSERT_EQ(exact->inlier_count, static_cast<int>(observations.size()));
   const MotionState state = update_paper_filter(camera_, predicted_, observations);
-  const Vector6d off = difference(exact->T_world_camera, state.T_world_camera);
+  const Vector6d off = difference(exact->T_world_camera, state.T_world_body);
   EXPECT_LT(std::sqrt(off.dot(exact->covariance.inverse() * off)), 0.05);
   const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6d> ratios(state.covariance.topLeftCorner<6, 6>(),
                                                                   exact->covariance);
@@ -120,7 +120,7 @@ TEST_F(PaperFilter, IsNearTheIteratedUpdate) {
 // The velocities follow the pose as in absorb.
 TEST_F(PaperFilter, MovesTheVelocitiesAlong) {
   const MotionState state = update_paper_filter(camera_, predicted_, test::observations_of(map_, 0));
-  const MotionState expected = absorb(predicted_, state.T_world_camera, state.covariance.topLeftCorner<6, 6>());
+  const MotionState expected = absorb(predicted_, state.T_world_body, state.covariance.topLeftCorner<6, 6>());
   EXPECT_GT(expected.v_world.norm(), 0.05);
   EXPECT_LT((state.v_world - expected.v_world).norm(), 0.02 * expected.v_world.norm());
   EXPECT_LT((state.omega_body - expected.omega_body).norm(), 0.02 * expected.omega_body.norm());

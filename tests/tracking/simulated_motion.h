@@ -41,7 +41,7 @@ struct SimulatedCamera {
 
   SimulatedFrame frame(const MotionState& truth, RandomGeometry& random) const {
     SimulatedFrame frame{truth, {}};
-    for (const Sighting& s : sightings_from(camera, points, truth.T_world_camera, noise_px, random)) {
+    for (const Sighting& s : sightings_from(camera, points, truth.T_world_body, noise_px, random)) {
       PointObservation o;
       o.pixel = s.pixel;
       o.sigma_px = s.sigma_px;
@@ -70,7 +70,7 @@ inline SimulatedCamera simulated_camera(RandomGeometry& random, int points = 60)
 /// to the given sigma along each axis (m/s², rad/s²).
 inline MotionState belief_before_points(double acceleration_sigma) {
   MotionState state;
-  state.T_world_camera = looking_at({6, 0, 0.5}, {0, 0, 0});
+  state.T_world_body = looking_at({6, 0, 0.5}, {0, 0, 0});
   state.v_world = {0.1, 0.3, -0.1};
   state.omega_body = {0.02, -0.05, 0.03};
   Vector18d sigmas;

@@ -24,7 +24,7 @@ class SlamTrackTest : public testing::Test {
   // Sightings of points `first` to `last` - 1.
   SlamFrame frame(const MotionState& truth, int first, int last) {
     SlamFrame frame{truth.time, {isotropic_noise(0.1, 0.05)}, {}, 0.5};
-    const auto seen = test::sightings_from(simulated_.camera, map_.points, truth.T_world_camera, 0.5, random_);
+    const auto seen = test::sightings_from(simulated_.camera, map_.points, truth.T_world_body, 0.5, random_);
     for (const Sighting& s : seen) {
       if (s.point >= first && s.point < last) frame.inliers.push_back({s.point, -1, s.pixel});
     }
@@ -46,7 +46,7 @@ TEST_F(SlamTrackTest, FollowsTheCamera) {
     track = follow(simulated_.camera, track, map_, living_, frame(truth, 0, 60), 40);
   }
   EXPECT_EQ(track.map_points.size(), 40u);
-  const Vector6d off = difference(track.state.camera.T_world_camera, truth.T_world_camera);
+  const Vector6d off = difference(track.state.camera.T_world_body, truth.T_world_body);
   const Matrix6d P = track.state.covariance.topLeftCorner<6, 6>();
   EXPECT_LT(off.dot(P.ldlt().solve(off)), 22.5) << "6 dof, 99.9 %, seed " << kSeed;
   EXPECT_LT(off.norm(), 0.02);

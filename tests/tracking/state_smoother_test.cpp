@@ -21,7 +21,7 @@ using Vector9d = Eigen::Matrix<double, 9, 1>;
 // The translational part of a state or an error: place, velocity, acceleration.
 Vector9d place_of(const MotionState& state) {
   Vector9d x;
-  x << state.T_world_camera.translation(), state.v_world, state.a_world;
+  x << state.T_world_body.translation(), state.v_world, state.a_world;
   return x;
 }
 
@@ -51,9 +51,9 @@ class SmoothLinear : public testing::Test {
       MotionStep step;
       step.predicted = k == 0 ? state : predict(state, state.time + from_seconds(kStep_s), noise_);
       PoseLikelihood sightings;
-      sightings.T_world_camera.translation() = random_.vector(0.3);
+      sightings.T_world_body.translation() = random_.vector(0.3);
       sightings.information.topLeftCorner<3, 3>() = R_.inverse();
-      measured_.push_back(sightings.T_world_camera.translation());
+      measured_.push_back(sightings.T_world_body.translation());
       step.state = state = absorb(step.predicted, sightings);
       steps_.push_back(step);
     }
@@ -136,7 +136,7 @@ TEST_F(SmoothLinear, LeavesWhatIsKnownExactly) {
     MotionStep step;
     step.predicted = predict(state, state.time + from_seconds(kStep_s), {noise_.acceleration, Matrix6d::Zero()});
     PoseLikelihood sightings;
-    sightings.T_world_camera.translation() = z;
+    sightings.T_world_body.translation() = z;
     sightings.information.topLeftCorner<3, 3>() = R_.inverse();
     step.state = state = absorb(step.predicted, sightings);
     steps.push_back(step);
@@ -144,7 +144,7 @@ TEST_F(SmoothLinear, LeavesWhatIsKnownExactly) {
   const SmoothedState smoothed = smooth(steps).front();
   EXPECT_TRUE(smoothed.state.covariance.allFinite());
   EXPECT_LT(smoothed.state.a_world.norm() + smoothed.state.covariance.bottomRows<6>().norm(), 1e-12);
-  EXPECT_GT(difference(steps.front().state.T_world_camera, smoothed.state.T_world_camera).norm(), 1e-3);
+  EXPECT_GT(difference(steps.front().state.T_world_body, smoothed.state.T_world_body).norm(), 1e-3);
 }
 
 struct Smoothed {
@@ -167,9 +167,9 @@ Smoothed smooth_recordings(int trials) {
     result.nees += test::nees(smoothed[5].state, frames[5].truth);
     for (std::size_t k = 0; k < smoothed.size(); ++k) {
       const MotionState &before = steps[k].state, &after = smoothed[k].state;
-      result.square_m2 += difference(after.T_world_camera, frames[k].truth.T_world_camera).head<3>().squaredNorm();
+      result.square_m2 += difference(after.T_world_body, frames[k].truth.T_world_body).head<3>().squaredNorm();
       result.filtered_square_m2 +=
-          difference(before.T_world_camera, frames[k].truth.T_world_camera).head<3>().squaredNorm();
+          difference(before.T_world_body, frames[k].truth.T_world_body).head<3>().squaredNorm();
       ++frames_seen;
     }
   }

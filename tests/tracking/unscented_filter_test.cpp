@@ -27,7 +27,7 @@ TEST_F(UnscentedFilter, IsTheLinearUpdateForASmallCovariance) {
   simulated_.noise_px = 0.01;
   const MotionState truth = moved_by(predicted_, test::drawn(random_, predicted_.covariance));
   const auto observations = simulated_.frame(truth, random_).observations;
-  const PosePrior prior{predicted_.T_world_camera, predicted_.covariance.topLeftCorner<6, 6>().inverse()};
+  const PosePrior prior{predicted_.T_world_body, predicted_.covariance.topLeftCorner<6, 6>().inverse()};
   PoseUpdateOptions options;
   options.gate_chi2 = 100;
   const auto exact = update_pose(simulated_.camera, prior, observations, options);
@@ -57,7 +57,7 @@ TEST_F(UnscentedFilter, LeavesOutWhatASigmaPointDoesNotSee) {
   auto observations = simulated_.frame(predicted_, random_).observations;
   const MotionState expected = update_unscented_filter(simulated_.camera, predicted_, observations);
   PointObservation behind;
-  behind.p_world = predicted_.T_world_camera * Eigen::Vector3d(0, 0, -1);
+  behind.p_world = predicted_.T_world_body * Eigen::Vector3d(0, 0, -1);
   observations.push_back(behind);
   const MotionState state = update_unscented_filter(simulated_.camera, predicted_, observations);
   EXPECT_LT(error_between(expected, state).norm(), 1e-12);
