@@ -165,9 +165,13 @@ std::optional<double> value_of(const LineDetector& detector, const Plane& plane_
   return projection->value;
 }
 
+bool reads_pixels(const LineModel& model) {
+  return std::holds_alternative<LineCamera>(model) || std::holds_alternative<PixelAxis>(model);
+}
+
 double residual(const LineModel& model, double value, double expected) {
-  const bool is_pixel = std::holds_alternative<LineCamera>(model) || std::holds_alternative<PixelAxis>(model);
-  return is_pixel ? value - expected : std::remainder(value - expected, 2.0 * std::numbers::pi);
+  const double difference = value - expected;
+  return reads_pixels(model) ? difference : std::remainder(difference, 2.0 * std::numbers::pi);
 }
 
 Vector3d centre_world(const LineDetector& detector) {

@@ -106,6 +106,9 @@ std::optional<Plane> plane_of(const LineDetector& detector, double value);
 /// or not the plane passes through the detector's centre. Empty where no axis point in view does.
 std::optional<double> value_of(const LineDetector& detector, const Plane& plane_world);
 
+/// Whether the model reads pixels; else angles, rad.
+bool reads_pixels(const LineModel& model);
+
 /// value - expected, in the model's unit; angles that differ by whole turns are the same: theirs is in [-π, π].
 double residual(const LineModel& model, double value, double expected);
 
