@@ -84,8 +84,9 @@ std::string to_string(BodyStatus status) {
   return "";
 }
 
-nlohmann::json pose_event(const std::string& body, const BodyEstimate& estimate) {
-  nlohmann::json event{{"t_ns", nanoseconds(estimate.time)},
+nlohmann::json pose_event(const std::string& body, const BodyEstimate& estimate, PoseDetail detail) {
+  nlohmann::json event{{"event", "pose"},
+                       {"t_ns", nanoseconds(estimate.time)},
                        {"body", body},
                        {"status", to_string(estimate.status)},
                        {"determined", estimate.determined}};
@@ -94,6 +95,7 @@ nlohmann::json pose_event(const std::string& body, const BodyEstimate& estimate)
   const Eigen::Quaterniond q = attitude_of(state);
   event["p_world_m"] = list_of(state.T_world_body.translation());
   event["q_wxyz"] = {q.w(), q.x(), q.y(), q.z()};
+  if (detail == PoseDetail::Pose) return event;
   event["v_world_m_s"] = list_of(state.v_world);
   event["omega_body_rad_s"] = list_of(state.omega_body);
   event["sigma"] = list_of(sigma_of(state));
@@ -127,8 +129,9 @@ void MarkerFrames::commit() {
   writer_.commit();
 }
 
-BodyFiles::BodyFiles(const ResultDirectory& directory, std::span<const RigidBody> bodies)
+BodyFiles::BodyFiles(const ResultDirectory& directory, std::span<const RigidBody> bodies, PoseDetail detail)
     : directory_(directory),
+      detail_(detail),
       poses_(directory.path("poses.csv"), kPoseColumns),
       markers_(directory.path("markers.trc"), bodies) {
   for (const RigidBody& body : bodies) names_.push_back(body.name);
@@ -138,14 +141,15 @@ BodyFiles::BodyFiles(const ResultDirectory& directory, std::span<const RigidBody
 void BodyFiles::add(std::size_t body, const BodyEstimate& estimate, std::size_t readings) {
   const MotionState& state = estimate.state;
   std::vector<TableCell> cells{nanoseconds(estimate.time), names_.at(body), to_string(estimate.status)};
-  if (estimate.status == BodyStatus::Lost) {
-    cells.resize(kPoseColumns.size() - 4, std::string());
-  } else {
+  if (estimate.status != BodyStatus::Lost) {
     append_pose(cells, state);
-    append(cells, state.v_world);
-    append(cells, state.omega_body);
-    append(cells, sigma_of(state));
+    if (detail_ == PoseDetail::Motion) {
+      append(cells, state.v_world);
+      append(cells, state.omega_body);
+      append(cells, sigma_of(state));
+    }
   }
+  cells.resize(kPoseColumns.size() - 4, std::string());
   for (const std::int64_t count :
        {std::int64_t{estimate.determined}, static_cast<std::int64_t>(readings), std::int64_t{estimate.inlier_count}}) {
     cells.emplace_back(count);
@@ -155,9 +159,10 @@ void BodyFiles::add(std::size_t body, const BodyEstimate& estimate, std::size_t 
   if (estimate.status == BodyStatus::Ambiguous) write_candidates(names_[body], estimate);
   const bool is_tracked = estimate.status == BodyStatus::Tracked;
   markers_.add(body, estimate.time, is_tracked ? std::optional(state.T_world_body) : std::nullopt);
-  if (is_tracked) {
-    trajectories_[body].write({estimate.time, state.T_world_body, Matrix6d(state.covariance.topLeftCorner<6, 6>())});
-  }
+  if (!is_tracked) return;
+  StampedPose pose{estimate.time, state.T_world_body, {}};
+  if (detail_ == PoseDetail::Motion) pose.covariance = state.covariance.topLeftCorner<6, 6>();
+  trajectories_[body].write(pose);
 }
 
 void BodyFiles::write_candidates(const std::string& name, const BodyEstimate& estimate) {

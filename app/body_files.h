@@ -19,12 +19,18 @@
 
 namespace alidade {
 
+/// What a method tells of a body that it tracks.
+enum class PoseDetail {
+  Pose,    ///< position and attitude
+  Motion,  ///< with velocities and covariance
+};
+
 /// "lost", "ambiguous", "tracked".
 std::string to_string(BodyStatus status);
 
-/// An estimate as one JSON object, for a live feed: t_ns, body, status, determined and, unless lost, p_world_m, q_wxyz,
-/// v_world_m_s, omega_body_rad_s, sigma (6: m, rad; body axes).
-nlohmann::json pose_event(const std::string& body, const BodyEstimate& estimate);
+/// An estimate as one JSON object, for a live feed: event ("pose"), t_ns, body, status, determined and, unless lost,
+/// p_world_m, q_wxyz and, where known, v_world_m_s, omega_body_rad_s, sigma (6: m, rad; body axes).
+nlohmann::json pose_event(const std::string& body, const BodyEstimate& estimate, PoseDetail detail);
 
 /// Markers of several bodies as frames of one TRC file, whichever body is told of first.
 class MarkerFrames {
@@ -58,7 +64,7 @@ class MarkerFrames {
 class BodyFiles {
  public:
   /// Refers to the directory.
-  BodyFiles(const ResultDirectory& directory, std::span<const RigidBody> bodies);
+  BodyFiles(const ResultDirectory& directory, std::span<const RigidBody> bodies, PoseDetail detail);
 
   /// The estimates of each body come in order of time, and all bodies are told of every time. `readings`: how many the
   /// batch had.
@@ -70,6 +76,7 @@ class BodyFiles {
   void write_candidates(const std::string& name, const BodyEstimate& estimate);
 
   const ResultDirectory& directory_;
+  PoseDetail detail_;
   std::vector<std::string> names_;
   TableWriter poses_;
   std::optional<TableWriter> candidates_;

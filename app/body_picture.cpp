@@ -149,7 +149,7 @@ Scene scene_of(const BodyRun& run) {
     const Rgb colour = curve_colour(i + 1);
     scene.legend.push_back({run.bodies[i].name, colour, PyramidStyle::Solid});
     scene.paths.push_back(path_of(run.tallies[i], colour));
-    add_covariances(run.tallies[i], 0.5 * size_m, colour, scene);
+    if (run.detail == PoseDetail::Motion) add_covariances(run.tallies[i], 0.5 * size_m, colour, scene);
     if (run.tallies[i].fullest) add_sights(run, run.bodies[i], *run.tallies[i].fullest, colour, scene);
   }
   return scene;

@@ -32,11 +32,12 @@ void keep_fullest(BodyTally& tally, const BodyEstimate& estimate, std::span<cons
 }  // namespace
 
 BodyRecord::BodyRecord(const ResultDirectory& directory, std::vector<LineDetector> detectors,
-                       std::vector<RigidBody> bodies)
-    : directory_(directory), detectors_(detectors), files_(directory, bodies), residuals_(detectors, bodies) {
+                       std::vector<RigidBody> bodies, PoseDetail detail)
+    : directory_(directory), detectors_(detectors), files_(directory, bodies, detail), residuals_(detectors, bodies) {
   if (bodies.empty()) throw std::invalid_argument("BodyRecord: at least one body");
   pending_.resize(bodies.size());
   run_.tallies.resize(bodies.size());
+  run_.detail = detail;
   run_.detectors = std::move(detectors);
   run_.bodies = std::move(bodies);
 }

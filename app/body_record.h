@@ -43,6 +43,7 @@ struct BodyTally {
 
 /// A body track as it was run, for those who tell of it.
 struct BodyRun {
+  PoseDetail detail = PoseDetail::Motion;
   std::vector<LineDetector> detectors;
   std::vector<RigidBody> bodies;
   std::vector<BodyTally> tallies;  ///< one per body
@@ -64,7 +65,8 @@ struct BodyRun {
 class BodyRecord {
  public:
   /// Refers to the directory. Throws std::invalid_argument for no body.
-  BodyRecord(const ResultDirectory& directory, std::vector<LineDetector> detectors, std::vector<RigidBody> bodies);
+  BodyRecord(const ResultDirectory& directory, std::vector<LineDetector> detectors, std::vector<RigidBody> bodies,
+             PoseDetail detail = PoseDetail::Motion);
 
   /// A batch right after it was tracked: residuals are taken here. Every body is told of every batch, in order of time.
   void observe(std::size_t body, const BodyEstimate& estimate, std::span<const LineReading> readings);

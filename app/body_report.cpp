@@ -65,17 +65,19 @@ struct Curves {
   }
 };
 
-nlohmann::json summary_of(const RigidBody& body, const BodyTally& tally) {
-  return {{"name", body.name},
-          {"markers", body.markers.size()},
-          {"batches", tally.batches()},
-          {"tracked", tally.tracked},
-          {"ambiguous", tally.ambiguous},
-          {"lost", tally.lost},
-          {"readings", tally.readings},
-          {"readings_explained", ratio(tally.explained, tally.readings)},
-          {"mean_sigma_position_m", ratio(tally.position_sigma_sum_m, static_cast<double>(tally.tracked))},
-          {"mean_sigma_rotation_rad", ratio(tally.rotation_sigma_sum_rad, static_cast<double>(tally.tracked))}};
+nlohmann::json summary_of(const BodyRun& run, std::size_t body) {
+  const BodyTally& tally = run.tallies[body];
+  nlohmann::json summary{
+      {"name", run.bodies[body].name}, {"markers", run.bodies[body].markers.size()},
+      {"batches", tally.batches()},    {"tracked", tally.tracked},
+      {"ambiguous", tally.ambiguous},  {"lost", tally.lost},
+      {"readings", tally.readings},    {"readings_explained", ratio(tally.explained, tally.readings)}};
+  if (run.detail == PoseDetail::Motion && tally.tracked > 0) {
+    const auto tracked = static_cast<double>(tally.tracked);
+    summary["mean_sigma_position_m"] = tally.position_sigma_sum_m / tracked;
+    summary["mean_sigma_rotation_rad"] = tally.rotation_sigma_sum_rad / tracked;
+  }
+  return summary;
 }
 
 ReportTable residual_table(const BodyRun& run, const std::string& of, const std::string& whose) {
@@ -153,7 +155,7 @@ nlohmann::json summary_of(const BodyRun& run) {
   if (run.fault) summary["fault"] = *run.fault;
   summary["bodies"] = nlohmann::json::array();
   for (std::size_t i = 0; i < run.bodies.size(); ++i) {
-    summary["bodies"].push_back(summary_of(run.bodies[i], run.tallies[i]));
+    summary["bodies"].push_back(summary_of(run, i));
   }
   return summary;
 }
@@ -168,6 +170,7 @@ std::vector<std::string> table_lines(const BodyRun& run) {
     const auto tracked = static_cast<double>(t.tracked);
     lines.push_back(
         fmt::format("  readings: {:.2f} % of {} explained", 100.0 * ratio(t.explained, t.readings), t.readings));
+    if (run.detail == PoseDetail::Pose) continue;
     lines.push_back(fmt::format("  mean sigma: {:.4g} mm, {:.4g} mrad", 1e3 * t.position_sigma_sum_m / tracked,
                                 1e3 * t.rotation_sigma_sum_rad / tracked));
   }
@@ -200,6 +203,7 @@ std::vector<Plot> plots_of(const BodyRun& run, std::size_t body) {
     sigma_m.add(t, {sigma(0), sigma(1), sigma(2)});
     sigma_rad.add(t, {sigma(3), sigma(4), sigma(5)});
   }
+  if (run.detail == PoseDetail::Pose) return {position.plot, attitude.plot, share.plot};
   return {position.plot, attitude.plot, sigma_m.plot, sigma_rad.plot, share.plot};
 }
 

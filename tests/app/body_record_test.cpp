@@ -159,6 +159,20 @@ TEST(BodyRecord, GivesEachOfSeveralBodiesItsFilesAndAllMarkersOneClock) {
   EXPECT_TRUE(markers[8].ends_with("\t0.002000\t2.000000\t-0.250000"));
 }
 
+TEST(BodyRecord, LeavesBlankWhatTheMethodDoesNotTell) {
+  const test::TemporaryDirectory folder;
+  ResultDirectory directory(folder / "out", "track body");
+  BodyRecord record(directory, two_detectors(), {kProbe}, PoseDetail::Pose);
+  put(record, 0, tracked_at(0));
+  const BodyRun run = record.commit();
+  directory.commit(nlohmann::json::object());
+  EXPECT_EQ(lines_of(folder / "out/poses.csv").at(1), "0,probe,tracked,0,0.25,2,1,0,0,0,,,,,,,,,,,,,6,4,3,0");
+  EXPECT_EQ(lines_of(folder / "out/covariance.csv").size(), 2u);  // head alone
+  EXPECT_FALSE(summary_of(run)["bodies"][0].contains("mean_sigma_position_m"));
+  EXPECT_EQ(plots_of(run, 0).size(), 3u);
+  EXPECT_FALSE(pose_event("probe", tracked_at(0), PoseDetail::Pose).contains("sigma"));
+}
+
 TEST(BodyRecord, RefusesABatchThatWasNotObserved) {
   const test::TemporaryDirectory folder;
   const ResultDirectory directory(folder / "out", "track body");
@@ -178,16 +192,16 @@ TEST(BodyRecord, KeepsFewSamplesOfALongRecording) {
 }
 
 TEST(PoseEvent, TellsAPoseOrThatThereIsNone) {
-  const nlohmann::json event = pose_event("probe", tracked_at(1));
+  const nlohmann::json event = pose_event("probe", tracked_at(1), PoseDetail::Motion);
   EXPECT_EQ(event["t_ns"], 4'000'000);
   EXPECT_EQ(event["status"], "tracked");
   EXPECT_EQ(event["p_world_m"], (nlohmann::json{0.001, 0.25, 2.0}));
   EXPECT_EQ(event["q_wxyz"].size(), 4u);
   EXPECT_EQ(event["sigma"].size(), 6u);
   EXPECT_FALSE(event.contains("candidates"));
-  EXPECT_EQ(pose_event("probe", ambiguous_at(1))["candidates"], 2);
-  EXPECT_EQ(pose_event("probe", lost_at(1)).dump(),
-            R"({"body":"probe","determined":0,"status":"lost","t_ns":4000000})");
+  EXPECT_EQ(pose_event("probe", ambiguous_at(1), PoseDetail::Motion)["candidates"], 2);
+  EXPECT_EQ(pose_event("probe", lost_at(1), PoseDetail::Motion).dump(),
+            R"({"body":"probe","determined":0,"event":"pose","status":"lost","t_ns":4000000})");
 }
 
 BodyRun run_with_a_gap() {
