@@ -15,7 +15,7 @@ BodySequenceWriter::BodySequenceWriter(const ResultDirectory& directory, const B
   write_bodies(directory.path("body.csv"), scene.bodies());
   write_detector_rig(directory.path("detectors.yaml"), {scene.detectors(), {}});
   for (std::size_t i = 0; i < scene.bodies().size(); ++i) {
-    truth_.push_back(std::make_unique<TrajectoryWriter>(directory.path(truth_file(scene, i)), "body"));
+    truth_.push_back(std::make_unique<TumWriter>(directory.path(truth_file(scene, i)), "body"));
   }
 }
 

@@ -7,7 +7,7 @@
 #include "app/result_directory.h"
 #include "datasets/body_scene.h"
 #include "io/reading_file.h"
-#include "io/trajectory_file.h"
+#include "io/trajectory_writer.h"
 
 namespace alidade {
 
@@ -26,7 +26,7 @@ class BodySequenceWriter {
 
  private:
   ReadingWriter readings_;
-  std::vector<std::unique_ptr<TrajectoryWriter>> truth_;
+  std::vector<std::unique_ptr<TumWriter>> truth_;
 };
 
 /// The name of the file of a body's true poses.

@@ -58,6 +58,7 @@ bool LineStream::refill() {
       throw InputError(name_, number_ + 1, "cannot be read: " + std::generic_category().message(errno), "");
     }
     end_ += static_cast<std::size_t>(count);
+    read_ += count;
     at_end_ = count == 0;
     return count > 0;
   }

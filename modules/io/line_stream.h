@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <stop_token>
@@ -31,6 +32,9 @@ class LineStream {
   /// stop is requested. Throws InputError where reading fails or a line is longer than 1 MB.
   std::optional<StreamLine> next();
 
+  /// Bytes of the lines given out so far, with those passed over between them.
+  std::int64_t bytes() const { return read_ - static_cast<std::int64_t>(end_ - begin_); }
+
   /// What messages call the stream: its path, or "standard input".
   const std::string& name() const { return name_; }
 
@@ -42,6 +46,7 @@ class LineStream {
   int descriptor_ = -1;
   std::vector<char> buffer_;
   std::size_t begin_ = 0, end_ = 0;  // of what is read and not yet given out
+  std::int64_t read_ = 0;            // bytes
   int number_ = 0;
   bool at_end_ = false;
 };

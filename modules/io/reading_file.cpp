@@ -213,4 +213,8 @@ std::int64_t ReadingReader::count() const {
   return state_->count;
 }
 
+std::int64_t ReadingReader::bytes() const {
+  return state_->stream.bytes();
+}
+
 }  // namespace alidade

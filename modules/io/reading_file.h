@@ -43,6 +43,9 @@ class ReadingReader {
   /// Readings given out so far.
   std::int64_t count() const;
 
+  /// How far into the stream that is, in bytes.
+  std::int64_t bytes() const;
+
  private:
   struct State;
   std::unique_ptr<State> state_;

@@ -10,6 +10,7 @@
 #include "core/errors.h"
 #include "io/pose_files.h"
 #include "io/text_rows.h"
+#include "io/trajectory_writer.h"
 
 namespace alidade {
 namespace {
@@ -188,22 +189,10 @@ TrajectoryFile read_trajectory(const fs::path& path) {
   return fs::is_directory(path) ? read_folder(path) : read_file(path);
 }
 
-TrajectoryWriter::TrajectoryWriter(const fs::path& path, std::string_view moved) : file_(path) {
-  file_.write(fmt::format("# timestamp[s] tx ty tz[m] qx qy qz qw: {} to world\n", moved));
-}
-
-void TrajectoryWriter::write(const StampedPose& pose) {
-  const Eigen::Vector3d t = pose.T_world_camera.translation();
-  Eigen::Quaterniond q(pose.T_world_camera.linear());
-  if (q.w() < 0) q.coeffs() *= -1;
-  file_.write(fmt::format("{} {} {} {} {} {} {} {}\n", format_seconds(pose.time), t.x(), t.y(), t.z(), q.x(), q.y(),
-                          q.z(), q.w()));
-}
-
 void write_trajectory_tum(const fs::path& path, const Trajectory& trajectory) {
-  TrajectoryWriter file(path);
-  for (const StampedPose& pose : trajectory) file.write(pose);
-  file.commit();
+  TumWriter writer(path);
+  for (const StampedPose& pose : trajectory) writer.write(pose);
+  writer.commit();
 }
 
 }  // namespace alidade

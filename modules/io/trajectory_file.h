@@ -2,10 +2,8 @@
 #pragma once
 
 #include <filesystem>
-#include <string_view>
 
 #include "geometry/trajectory.h"
-#include "io/atomic_file.h"
 
 namespace alidade {
 
@@ -33,21 +31,7 @@ struct TrajectoryFile {
 /// row before, or not in order of time. A time may be repeated once: loggers round.
 TrajectoryFile read_trajectory(const std::filesystem::path& path);
 
-/// Writes `timestamp tx ty tz qx qy qz qw` pose by pose under a header line: times exact in ns, numbers with as many
-/// digits as give back the same double. The file is there once commit returned. Throws DeviceError as AtomicFile does.
-class TrajectoryWriter {
- public:
-  /// `moved`: whose poses they are, for the header line.
-  explicit TrajectoryWriter(const std::filesystem::path& path, std::string_view moved = "camera");
-
-  void write(const StampedPose& pose);
-  void commit() { file_.commit(); }
-
- private:
-  AtomicFile file_;
-};
-
-/// Writes a whole trajectory through TrajectoryWriter.
+/// Writes a whole trajectory through TumWriter (io/trajectory_writer.h). Throws DeviceError.
 void write_trajectory_tum(const std::filesystem::path& path, const Trajectory& trajectory);
 
 /// Where the covariances of a trajectory file stand: `covariance.csv` beside `trajectory.tum`, else

@@ -35,10 +35,7 @@ SweepTerms& terms_of(LineModel& model) {
   return std::get<Lighthouse2>(model).terms;
 }
 
-// A direction in the plane of a corrected angle, at the elevation at which the logged plane passes a marker, is read at
-// the raw angle. The corrected angle's plane is exact: the marker itself need not be known but for its elevation, which
-// the planes of the other sweep give; on the axis (elevation 0) the terms of elevation vanish, so that those are left
-// to the test of the full set below.
+// The planes of the two corrected angles of a marker meet in its direction, which has to be read at the raw angles.
 class RawAngles : public testing::TestWithParam<const char*> {};
 
 TEST_P(RawAngles, FollowFromCorrectedOnes) {

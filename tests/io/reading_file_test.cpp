@@ -34,6 +34,7 @@ class ReadingFile : public testing::Test {
     std::vector<LineReading> readings;
     while (const auto reading = reader.next()) readings.push_back(*reading);
     EXPECT_EQ(reader.count(), static_cast<std::int64_t>(readings.size()));
+    EXPECT_EQ(reader.bytes(), static_cast<std::int64_t>(text.size()));
     return readings;
   }
   std::string message(const std::string& text) {

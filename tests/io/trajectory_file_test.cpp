@@ -281,16 +281,6 @@ TEST(WriteTrajectoryTum, HasAHeaderThatNamesOrderAndUnits) {
             "# timestamp[s] tx ty tz[m] qx qy qz qw: camera to world\n0.000000000 0 0 0 0 0 0 1\n");
 }
 
-TEST(TrajectoryWriter, IsThereOnceCommitted) {
-  const test::TemporaryDirectory folder;
-  TrajectoryWriter writer(folder / "a.tum", "body");
-  writer.write({});
-  EXPECT_FALSE(std::filesystem::exists(folder / "a.tum"));
-  writer.commit();
-  EXPECT_EQ(text_of(folder / "a.tum"),
-            "# timestamp[s] tx ty tz[m] qx qy qz qw: body to world\n0.000000000 0 0 0 0 0 0 1\n");
-}
-
 TEST(WriteTrajectoryTum, SaysWhereItCannotWrite) {
   const test::TemporaryDirectory folder;
   EXPECT_THROW(write_trajectory_tum(folder / "missing/a.tum", {StampedPose{}}), DeviceError);
