@@ -13,7 +13,7 @@ class MotionLikelihoodTest : public testing::Test {
  protected:
   // A state with all its parts correlated, sigmas of about 2 cm, 5 mrad, 0.1 m/s, 0.05 rad/s, 1 m/s² and 1 rad/s².
   MotionState belief() {
-    MotionState state = test::random_state(random_);
+    MotionState state = test::random_state(random_, 0.01);
     Vector18d sigmas;
     sigmas << Eigen::Vector3d::Constant(0.02), Eigen::Vector3d::Constant(0.005), Eigen::Vector3d::Constant(0.1),
         Eigen::Vector3d::Constant(0.05), Vector6d::Constant(1.0);
