@@ -77,18 +77,21 @@ class TrackBodyCommand : public Command {
     std::error_code no_size;
     const auto size = observations_ == "-" ? 0 : std::filesystem::file_size(observations_, no_size);
     const auto total = no_size ? 0 : static_cast<std::int64_t>(size);
+    const auto show_progress = [&] {
+      context.progress({"tracking (kB)", in_kilobytes(reader.bytes()), in_kilobytes(total), ""});
+    };
     std::optional<InputError> fault;
     try {
       while (const auto reading = reader.next()) {
         if (context.stop.stop_requested() || (end_s_ && to_seconds(reading->time.time_since_epoch()) > *end_s_)) break;
         if (start_s_ && to_seconds(reading->time.time_since_epoch()) < *start_s_) continue;
-        pipeline.add(*reading);
-        context.progress({"tracking (kB)", in_kilobytes(reader.bytes()), in_kilobytes(total), ""});
+        if (pipeline.add(*reading)) show_progress();
       }
     } catch (const InputError& error) {
       fault = error;
     }
     pipeline.finish();
+    show_progress();
     return fault;
   }
 
