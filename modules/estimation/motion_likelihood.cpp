@@ -50,6 +50,7 @@ MotionLikelihood about(const MotionState& state, const MotionLikelihood& likelih
   moved.at = state;
   moved.information = J.transpose() * likelihood.information * J;
   moved.gradient = J.transpose() * likelihood.gradient + moved.information * off;
+  moved.log_density = likelihood.log_density - moved.gradient.dot(off) + 0.5 * off.dot(moved.information * off);
   return moved;
 }
 
@@ -67,10 +68,12 @@ MotionState absorb(const MotionState& predicted, const MotionLikelihood& likelih
 
 double log_evidence(const Matrix18d& covariance, const MotionLikelihood& about_prediction) {
   if (!is_of_pose(about_prediction)) {
-    return log_evidence<18>(covariance, about_prediction.information, about_prediction.gradient);
+    return about_prediction.log_density +
+           log_evidence<18>(covariance, about_prediction.information, about_prediction.gradient);
   }
-  return log_evidence<6>(covariance.topLeftCorner<6, 6>(), about_prediction.information.topLeftCorner<6, 6>(),
-                         about_prediction.gradient.head<6>());
+  return about_prediction.log_density + log_evidence<6>(covariance.topLeftCorner<6, 6>(),
+                                                        about_prediction.information.topLeftCorner<6, 6>(),
+                                                        about_prediction.gradient.head<6>());
 }
 
 }  // namespace alidade

@@ -6,11 +6,12 @@
 namespace alidade {
 
 /// What measurements spread over a short time say of a state, to second order: log p(z | moved_by(at, e)) =
-/// gradientᵀ e - ½ eᵀ information e + constant. They may determine it in part only.
+/// log_density + gradientᵀ e - ½ eᵀ information e. They may determine it in part only.
 struct MotionLikelihood {
   MotionState at;  ///< its covariance is not looked at
   Matrix18d information = Matrix18d::Zero();
   Vector18d gradient = Vector18d::Zero();
+  double log_density = 0.0;  ///< at `at`, up to a constant of the measurements
 };
 
 /// The same likelihood as a function of the error of another state at the same time.
@@ -20,8 +21,8 @@ MotionLikelihood about(const MotionState& state, const MotionLikelihood& likelih
 /// not considered.
 MotionState absorb(const MotionState& predicted, const MotionLikelihood& likelihood);
 
-/// The log of the probability density that a prediction of this covariance gives to the measurements, over that which
-/// the predicted state by itself would give. `about_prediction` is about the prediction.
+/// The log of the probability density that a prediction of this covariance gives to the measurements, up to the same
+/// constant. `about_prediction` is about the prediction.
 double log_evidence(const Matrix18d& covariance, const MotionLikelihood& about_prediction);
 
 /// L with L Lᵀ = covariance; for a covariance that may be singular.

@@ -50,9 +50,8 @@ MotionStep absorb(const MotionState& state, Timestamp time, const MotionProcess&
   step.predicted = predict_without_noise(state, time);
   const PoseLikelihood likelihood = about(step.predicted.T_world_body, sightings);
   const Matrix6d P = covariance_in_map(step.predicted);
-  weigh_modes(step, state, motion, [&](const Matrix18d& Q) {
-    return log_evidence(P + Q.topLeftCorner<6, 6>(), likelihood);
-  });
+  weigh_modes(step, state, motion,
+              [&](const Matrix18d& Q) { return log_evidence(P + Q.topLeftCorner<6, 6>(), likelihood); });
   step.state = absorb(step.predicted, likelihood);
   return step;
 }

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "estimation/motion_noise.h"
 #include "estimation/motion_likelihood.h"
+#include "estimation/motion_noise.h"
 #include "estimation/motion_state.h"
 #include "estimation/pose_update.h"
 

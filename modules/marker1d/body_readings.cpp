@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include <Eigen/Cholesky>
 #include <fmt/format.h>
 
 #include "geometry/rotation.h"
@@ -36,8 +37,8 @@ const DetectorArray::Entry& DetectorArray::at(int id) const {
   return found->second;
 }
 
-BodyReadings::BodyReadings(const DetectorArray& detectors, const RigidBody& body,
-                           std::span<const LineReading> readings, double variance_factor) {
+BodyReadings::BodyReadings(const DetectorArray& detectors, const RigidBody& body, std::span<const LineReading> readings,
+                           double variance_factor) {
   for (const LineReading& r : readings) {
     const DetectorArray::Entry& entry = detectors.at(r.detector);
     const double sigma = r.sigma > 0 ? r.sigma : entry.detector.sigma;
@@ -81,8 +82,7 @@ void BodyReadings::linearise(const Sighting& s, Eigen::Index i) {
   J.head<3>() = g_body;
   J.segment<3>(3) = p_then.cross(g_body);
   if (is_instant_) return;
-  const Eigen::Vector3d by_turn =
-      right_jacobian_so3(turn).transpose() * s.p_body.cross(turned.transpose() * g_body);
+  const Eigen::Vector3d by_turn = right_jacobian_so3(turn).transpose() * s.p_body.cross(turned.transpose() * g_body);
   J.segment<3>(6) = dt * g_world;
   J.segment<3>(9) = dt * by_turn;
   J.segment<3>(12) = 0.5 * dt * dt * g_world;
@@ -109,6 +109,19 @@ MotionLikelihood BodyReadings::weighted_sum(const Eigen::ArrayXd& weight) const 
   const Eigen::Matrix<double, 18, Eigen::Dynamic> weighted = J_ * weight.matrix().asDiagonal();
   sum.information = weighted * J_.transpose();
   sum.gradient = weighted * residual_;
+  return sum;
+}
+
+MotionLikelihood BodyReadings::weighted_sum(const Eigen::ArrayXd& weight, const Eigen::MatrixXd& bends) const {
+  MotionLikelihood sum = weighted_sum(weight);
+  const Eigen::MatrixXd weighted = weight.matrix().asDiagonal() * bends;
+  // (I + ½ B Bᵀ)⁻¹ = I - B (2 I + Bᵀ B)⁻¹ Bᵀ
+  const Eigen::MatrixXd inner =
+      2.0 * Eigen::MatrixXd::Identity(bends.cols(), bends.cols()) + weighted.transpose() * bends;
+  const Eigen::Matrix<double, 18, Eigen::Dynamic> along = J_ * weighted;
+  const Eigen::LDLT<Eigen::MatrixXd> factor(inner);
+  sum.information -= along * factor.solve(along.transpose());
+  sum.gradient -= along * factor.solve(weighted.transpose() * residual_);
   return sum;
 }
 

@@ -41,6 +41,9 @@ class BodyReadings {
   /// Everything below is about this state (near the readings in time) from here on.
   void linearise(const MotionState& state);
 
+  /// Whether all are of this one moment: they speak of the pose alone.
+  bool is_of_pose_at(Timestamp time) const { return is_instant_ && (sightings_.empty() || sightings_[0].time == time); }
+
   /// Squared whitened residuals; infinite where the detector would not see the marker.
   const Eigen::ArrayXd& chi2() const { return chi2_; }
 
@@ -49,6 +52,15 @@ class BodyReadings {
 
   /// The sum over all, each with its weight: one for each χ².
   MotionLikelihood weighted_sum(const Eigen::ArrayXd& weight) const;
+
+  /// The sum where the readings bend away from their linearisation: a column of `bends` is how far, in sigmas, one
+  /// standard deviation of the state to either side along one direction takes each of them together (r(+) + r(-) - 2
+  /// r). To second order this is noise that they share, ½ bend bendᵀ. Source: Athans, Wishner, Bertolini 1968, the
+  /// second-order filter.
+  MotionLikelihood weighted_sum(const Eigen::ArrayXd& weight, const Eigen::MatrixXd& bends) const;
+
+  /// Residuals in sigmas.
+  const Eigen::VectorXd& residuals() const { return residual_; }
 
   Eigen::Index size() const { return chi2_.size(); }
 

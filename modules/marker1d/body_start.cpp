@@ -31,16 +31,9 @@ MotionState anywhere_near(const Eigen::Isometry3d& T_world_body, Timestamp time,
   return resting_state(time, T_world_body, isotropic_noise(1.0, 1.0), options.speed_m_s, options.rate_rad_s);
 }
 
-bool is_same(const MotionState& a, const MotionState& b) {
-  const Vector6d off = difference(a.T_world_body, b.T_world_body);
-  const Matrix6d P = a.covariance.topLeftCorner<6, 6>() + b.covariance.topLeftCorner<6, 6>();
-  return off.dot(P.ldlt().solve(off)) < 9.0;
-}
-
 void keep_probable(std::vector<BodyCandidate>& candidates, double least_log_odds) {
-  std::stable_sort(candidates.begin(), candidates.end(), [](const BodyCandidate& a, const BodyCandidate& b) {
-    return a.log_evidence > b.log_evidence;
-  });
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const BodyCandidate& a, const BodyCandidate& b) { return a.log_evidence > b.log_evidence; });
   std::vector<BodyCandidate> kept;
   for (BodyCandidate& c : candidates) {
     const bool is_double =
@@ -54,23 +47,30 @@ void keep_probable(std::vector<BodyCandidate>& candidates, double least_log_odds
 
 }  // namespace
 
+std::vector<Eigen::Isometry3d> poses_by_planes(const DetectorArray& detectors, const RigidBody& body,
+                                               std::span<const LineReading> readings) {
+  const std::vector<PlaneConstraint> constraints = constraints_of(detectors, body, readings);
+  std::vector<Eigen::Isometry3d> poses;
+  if (constraints.size() < 6) return poses;
+  for (const PlanePose& minimum : all_minima(constraints)) {
+    if (determined_directions(minimum.information) == 6) poses.push_back(minimum.T_world_body);
+  }
+  return poses;
+}
+
 std::vector<BodyCandidate> start_body(const DetectorArray& detectors, const RigidBody& body,
                                       std::span<const LineReading> readings, Timestamp time, double variance_factor,
                                       const BodyStartOptions& options) {
-  const std::vector<PlaneConstraint> constraints = constraints_of(detectors, body, readings);
   std::vector<BodyCandidate> candidates;
-  if (constraints.size() < 6) return candidates;
   const MotionProcess known_motion{{MotionNoise{}, 1.0}};
   const double least = std::max(6.0, options.least_share * static_cast<double>(readings.size()));
-  for (const PlanePose& minimum : all_minima(constraints)) {
-    if (determined_directions(minimum.information) < 6) return {};
+  for (const Eigen::Isometry3d& T_world_body : poses_by_planes(detectors, body, readings)) {
     BodyUpdate update = update_body(BodyReadings(detectors, body, readings, variance_factor),
-                                    anywhere_near(minimum.T_world_body, time, options), time, known_motion,
-                                    options.update);
+                                    anywhere_near(T_world_body, time, options), time, known_motion, options.update);
     if (update.inlier_count < least) continue;
     if (determined_directions(update.readings.information.topLeftCorner<6, 6>()) < 6) continue;
-    candidates.push_back({std::move(update.motion.state), update.log_evidence, std::move(update.is_inlier),
-                          update.inlier_count});
+    candidates.push_back(
+        {std::move(update.motion.state), update.log_evidence, std::move(update.is_inlier), update.inlier_count});
   }
   keep_probable(candidates, options.least_log_odds);
   return candidates;

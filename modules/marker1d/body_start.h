@@ -11,12 +11,17 @@ namespace alidade {
 
 struct BodyStartOptions {
   BodyUpdateOptions update;
-  double speed_m_s = 2.0;     ///< standard deviations of a motion of which nothing is known
+  double speed_m_s = 2.0;  ///< standard deviations of a motion of which nothing is known
   double rate_rad_s = 6.0;
-  double least_share = 0.5;   ///< of the readings that must fit
+  double least_share = 0.5;  ///< of the readings that must fit
   /// Odds, as a natural logarithm, against a pose that is left out beside a better one.
   double least_log_odds = 18.0;
 };
+
+/// The poses that are local optima of readings taken for one moment's, by their planes alone: none where they do not
+/// determine the pose.
+std::vector<Eigen::Isometry3d> poses_by_planes(const DetectorArray& detectors, const RigidBody& body,
+                                               std::span<const LineReading> readings);
 
 /// A state that may be the body's, from readings alone.
 struct BodyCandidate {

@@ -25,9 +25,9 @@ class MotionLearner {
 
  private:
   MotionProcess motion_;
-  MotionState first_;                      // before recent_
+  MotionState first_;  // before recent_
   std::vector<MotionLikelihood> recent_;
-  int count_ = 0, next_ = 0;               // batches seen; when to learn
+  int count_ = 0, next_ = 0;  // batches seen; when to learn
 };
 
 }  // namespace alidade

@@ -58,7 +58,8 @@ TEST_F(MotionLikelihoodTest, ResetsAnErrorByItsDerivative) {
   for (int k = 0; k < 18; ++k) {
     const Vector18d d = step * Vector18d::Unit(k);
     const Vector18d moved = (error_between(moved_by(state, e), moved_by(state, e + d)) -
-                             error_between(moved_by(state, e), moved_by(state, e - d))) / (2 * step);
+                             error_between(moved_by(state, e), moved_by(state, e - d))) /
+                            (2 * step);
     EXPECT_LT((moved - J.col(k)).norm(), 1e-8) << "component " << k;
   }
 }

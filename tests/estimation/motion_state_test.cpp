@@ -262,8 +262,7 @@ TEST(AbsorbSightings, DoesNotDependOnThePoseThatTheyAreWrittenAbout) {
   const Matrix6d W = test::random_covariance<6>(random, 0.1).inverse();
   const Vector6d g = W * draw(random, 1e-4, 1e-4), xi = draw(random, 1e-4, 1e-4);
   const MotionState here = absorb(predicted, PoseLikelihood{predicted.T_world_body, W, g});
-  const MotionState there =
-      absorb(predicted, PoseLikelihood{predicted.T_world_body * perturbation(xi), W, g - W * xi});
+  const MotionState there = absorb(predicted, PoseLikelihood{predicted.T_world_body * perturbation(xi), W, g - W * xi});
   EXPECT_GT(error_between(predicted, here).norm(), 1e-4);
   EXPECT_LT(error_between(here, there).norm(), 1e-6);
 }
