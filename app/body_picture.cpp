@@ -106,12 +106,12 @@ std::optional<TranslucentSurface> plane_patch(const LineDetector& detector, doub
   if (!plane) return std::nullopt;
   const Eigen::Vector3d centre = centre_world(detector);
   const Eigen::Vector3d sight = 1.1 * (p_world - distance(*plane, p_world) * plane->normal - centre);
-  const Eigen::Vector3d aside = 0.12 * plane->normal.cross(sight);
+  const Eigen::Vector3d aside = 0.1 * plane->normal.cross(sight);
   TranslucentSurface patch;
   patch.vertices_world = {centre, centre + sight - aside, centre + sight + aside};
   patch.triangles = {{0, 1, 2}};
   patch.colour = palette::kEstimate;
-  patch.opacity = 0.09;
+  patch.opacity = 0.06;
   return patch;
 }
 
@@ -140,7 +140,7 @@ void add_sights(const BodyRun& run, const RigidBody& body, const BodySnapshot& s
 Scene scene_of(const BodyRun& run) {
   Scene scene;
   scene.up_world = Eigen::Vector3d::UnitZ();
-  scene.point_size_px = 7.0;
+  scene.point_size_px = 9.0;
   const Eigen::AlignedBox3d box = box_of(run);
   const double size_m = box.isEmpty() ? 0.1 : std::max(1e-3, 0.04 * box.diagonal().norm());
   add_detectors(run, size_m, scene);
@@ -149,7 +149,7 @@ Scene scene_of(const BodyRun& run) {
     const Rgb colour = curve_colour(i + 1);
     scene.legend.push_back({run.bodies[i].name, colour, PyramidStyle::Solid});
     scene.paths.push_back(path_of(run.tallies[i], colour));
-    if (run.detail == PoseDetail::Motion) add_covariances(run.tallies[i], 0.5 * size_m, colour, scene);
+    if (run.detail == PoseDetail::Motion) add_covariances(run.tallies[i], 0.35 * size_m, colour, scene);
     if (run.tallies[i].fullest) add_sights(run, run.bodies[i], *run.tallies[i].fullest, colour, scene);
   }
   return scene;

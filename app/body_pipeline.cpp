@@ -90,8 +90,10 @@ BodyPipeline::BodyPipeline(std::span<const LineDetector> detectors, std::span<co
   }
 }
 
-void BodyPipeline::add(const LineReading& reading) {
-  if (const auto batch = batches_.add(reading)) track(*batch);
+bool BodyPipeline::add(const LineReading& reading) {
+  const auto batch = batches_.add(reading);
+  if (batch) track(*batch);
+  return batch.has_value();
 }
 
 void BodyPipeline::finish() {

@@ -53,8 +53,8 @@ class BodyPipeline {
   BodyPipeline(const BodyPipeline&) = delete;  // the trackers refer to its detectors
   BodyPipeline& operator=(const BodyPipeline&) = delete;
 
-  /// Readings of the bodies' markers (else std::invalid_argument), in order of time.
-  void add(const LineReading& reading);
+  /// Readings of the bodies' markers (else std::invalid_argument), in order of time. Whether a batch was tracked.
+  bool add(const LineReading& reading);
 
   /// The last batch, and what smoothing has kept back. Once, and last.
   void finish();

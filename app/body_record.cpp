@@ -31,6 +31,10 @@ void keep_fullest(BodyTally& tally, const BodyEstimate& estimate, std::span<cons
 
 }  // namespace
 
+bool BodyRun::has_answer() const {
+  return std::any_of(tallies.begin(), tallies.end(), [](const BodyTally& tally) { return tally.tracked > 0; });
+}
+
 BodyRecord::BodyRecord(const ResultDirectory& directory, std::vector<LineDetector> detectors,
                        std::vector<RigidBody> bodies, PoseDetail detail)
     : directory_(directory), detectors_(detectors), files_(directory, bodies, detail), residuals_(detectors, bodies) {
@@ -68,8 +72,10 @@ void BodyRecord::add(std::size_t body, const BodyEstimate& estimate) {
   files_.add(body, estimate, readings);
   BodyTally& tally = run_.tallies[body];
   BodySample sample{estimate.time, estimate.status, estimate.state.T_world_body,
-                    estimate.state.covariance.topLeftCorner<6, 6>(), 0.0};
-  if (readings > 0) sample.inlier_share = static_cast<double>(estimate.inlier_count) / static_cast<double>(readings);
+                    estimate.state.covariance.topLeftCorner<6, 6>(), std::nullopt};
+  const bool is_told = estimate.status == BodyStatus::Lost || estimate.is_inlier.size() == readings;
+  if (readings > 0 && is_told)
+    sample.inlier_share = static_cast<double>(estimate.inlier_count) / static_cast<double>(readings);
   ++(estimate.status == BodyStatus::Tracked     ? tally.tracked
      : estimate.status == BodyStatus::Ambiguous ? tally.ambiguous
                                                 : tally.lost);
@@ -82,9 +88,7 @@ void BodyRecord::add(std::size_t body, const BodyEstimate& estimate) {
 
 BodyRun BodyRecord::commit() {
   run_.residuals = residuals_.rows();
-  const bool is_tracked =
-      std::any_of(run_.tallies.begin(), run_.tallies.end(), [](const BodyTally& t) { return t.tracked > 0; });
-  if (is_tracked) run_.warnings = doubts_about(run_.residuals);
+  if (run_.has_answer()) run_.warnings = doubts_about(run_.residuals);
   write_residuals(directory_.path("residuals.csv"), run_.residuals);
   files_.commit();
   return std::move(run_);

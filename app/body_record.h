@@ -17,7 +17,7 @@ struct BodySample {
   BodyStatus status = BodyStatus::Lost;
   Eigen::Isometry3d T_world_body = Eigen::Isometry3d::Identity();  ///< means nothing where lost
   Matrix6d covariance = Matrix6d::Zero();
-  double inlier_share = 0.0;  ///< of the batch's readings; 0 where there are none
+  std::optional<double> inlier_share;  ///< of the batch's readings; empty where there are none, and at a start
 };
 
 /// One batch as the picture shows it.
@@ -58,6 +58,9 @@ struct BodyRun {
   double tracking_s = 0;  ///< reading, tracking and writing
   bool interrupted = false;
   std::optional<std::string> fault;  ///< what in the observations ended the run before their end
+
+  /// Whether any body was tracked in any batch.
+  bool has_answer() const;
 };
 
 /// Takes what trackers say of several bodies, batch by batch, and writes it down as it comes; keeps only statistics and

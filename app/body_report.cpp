@@ -189,7 +189,7 @@ std::vector<Plot> plots_of(const BodyRun& run, std::size_t body) {
   Eigen::Vector3d before = Eigen::Vector3d::Zero();
   for (const BodySample& s : run.tallies.at(body).samples.values()) {
     const double t = to_seconds(s.time - run.first);
-    share.add(t, {s.inlier_share});
+    share.add(t, {s.inlier_share.value_or(kGap)});
     if (s.status != BodyStatus::Tracked) {
       for (Curves* curves : {&position, &attitude, &sigma_m, &sigma_rad}) curves->add(t, {kGap, kGap, kGap});
       continue;

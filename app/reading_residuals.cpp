@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/reading_residuals.h"
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -29,8 +31,10 @@ void ReadingResiduals::add(std::span<const LineReading> readings,
     for (Tally* tally : {&by_detector_[{readings[i].detector, pixels}], &by_marker_[{readings[i].marker, pixels}]}) {
       ++tally->readings;
       if (!is_inlier[i] || !residuals[i]) continue;
-      tally->whitened.add(residuals[i]->value / residuals[i]->sigma);
-      tally->plain.add(residuals[i]->value);
+      const double whitened = residuals[i]->value / residuals[i]->sigma;
+      tally->whitened_sum += whitened;
+      tally->whitened_sum_of_squares += whitened * whitened;
+      tally->inliers.add(residuals[i]->value);
     }
   }
 }
@@ -38,8 +42,10 @@ void ReadingResiduals::add(std::span<const LineReading> readings,
 std::vector<ResidualRow> ReadingResiduals::rows() const {
   std::vector<ResidualRow> rows;
   const auto append = [&rows](const char* of, const std::string& name, const Key& key, const Tally& tally) {
-    rows.push_back({of, key.first, name, key.second ? "px" : "rad", tally.readings, tally.whitened.count(),
-                    tally.whitened.rms(), tally.whitened.mean(), tally.plain.rms(), tally.plain.median_magnitude()});
+    const auto count = static_cast<double>(std::max<std::int64_t>(1, tally.inliers.count()));
+    rows.push_back({of, key.first, name, key.second ? "px" : "rad", tally.readings, tally.inliers.count(),
+                    std::sqrt(tally.whitened_sum_of_squares / count), tally.whitened_sum / count, tally.inliers.rms(),
+                    tally.inliers.median_magnitude()});
   };
   for (const auto& [key, tally] : by_detector_) append("detector", detectors_.at(key.first).first, key, tally);
   for (const auto& [key, tally] : by_marker_) append("marker", markers_.at(key.first), key, tally);

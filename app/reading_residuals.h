@@ -41,7 +41,8 @@ class ReadingResiduals {
  private:
   struct Tally {
     std::int64_t readings = 0;
-    RunningStatistics whitened, plain;  // of the inliers
+    RunningStatistics inliers;                                 // residuals in the unit
+    double whitened_sum = 0.0, whitened_sum_of_squares = 0.0;  // of the inliers, too
   };
   using Key = std::pair<int, bool>;  // id, whether it is pixels
 

@@ -17,6 +17,10 @@
 namespace alidade {
 namespace {
 
+std::int64_t in_kilobytes(std::int64_t bytes) {
+  return (bytes + 999) / 1000;
+}
+
 class TrackBodyCommand : public Command {
  public:
   explicit TrackBodyCommand(CLI::App& flags) {
@@ -39,7 +43,7 @@ class TrackBodyCommand : public Command {
     BodyRecord record(directory, rig.detectors, bodies, detail_of(track_));
     const auto begin = std::chrono::steady_clock::now();
     const std::optional<InputError> fault = follow(context, reader, rig.detectors, bodies, record);
-    if (fault && record.run().batches == 0) throw *fault;
+    if (fault && !record.run().has_answer()) throw *fault;
 
     BodyRun run = record.commit();
     run.tracking_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -73,18 +77,21 @@ class TrackBodyCommand : public Command {
     std::error_code no_size;
     const auto size = observations_ == "-" ? 0 : std::filesystem::file_size(observations_, no_size);
     const auto total = no_size ? 0 : static_cast<std::int64_t>(size);
+    const auto show_progress = [&] {
+      context.progress({"tracking (kB)", in_kilobytes(reader.bytes()), in_kilobytes(total), ""});
+    };
     std::optional<InputError> fault;
     try {
       while (const auto reading = reader.next()) {
         if (context.stop.stop_requested() || (end_s_ && to_seconds(reading->time.time_since_epoch()) > *end_s_)) break;
         if (start_s_ && to_seconds(reading->time.time_since_epoch()) < *start_s_) continue;
-        pipeline.add(*reading);
-        context.progress({"tracking (bytes)", reader.bytes(), total, ""});
+        if (pipeline.add(*reading)) show_progress();
       }
     } catch (const InputError& error) {
       fault = error;
     }
     pipeline.finish();
+    show_progress();
     return fault;
   }
 
@@ -97,9 +104,7 @@ class TrackBodyCommand : public Command {
   }
 
   ExitCode answer(const RunContext& context, const BodyRun& run) const {
-    for (const BodyTally& tally : run.tallies) {
-      if (tally.tracked > 0) return ExitCode::Success;
-    }
+    if (run.has_answer()) return ExitCode::Success;
     context.warn(
         run.batches == 0
             ? fmt::format("{}: holds no reading", run.source)

@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "marker1d/body_residuals.h"
 
-#include <algorithm>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
+#include "core/find_by_id.h"
 #include "geometry/rotation.h"
 
 namespace alidade {
 namespace {
 
 const BodyMarker& marker_of(const RigidBody& body, int id) {
-  const auto found = std::find_if(body.markers.begin(), body.markers.end(), [id](const auto& m) { return m.id == id; });
-  if (found != body.markers.end()) return *found;
+  if (const BodyMarker* marker = find_by_id(std::span(body.markers), id)) return *marker;
   throw std::invalid_argument(fmt::format("body '{}' has no marker {}", body.name, id));
 }
 
