@@ -45,8 +45,8 @@ class CalibrationProblem {
   /// Residuals of the readings in units of their sigma; NaN where the detector does not see its marker.
   std::vector<double> residuals(const CalibrationState& state) const;
 
-  /// The pose at a moment between the knots.
-  Eigen::Isometry3d pose_at(const CalibrationState& state, double time_s) const;
+  /// The pose at a moment between the knots; empty outside them and in a gap of the readings.
+  std::optional<Eigen::Isometry3d> pose_at(const CalibrationState& state, double time_s) const;
 
  private:
   struct Place {
@@ -62,11 +62,15 @@ class CalibrationProblem {
   void lay_knots();
   void lay_border();
   Place place(double time_s) const;
-  void add_reading(const CalibrationState& state, std::size_t index, double loss, double* cost,
-                   BorderedSystem* system) const;
-  void add_reference(const CalibrationState& state, double* cost, BorderedSystem* system) const;
-  void add_motion(const CalibrationState& state, double* cost, BorderedSystem* system) const;
-  void add_priors(const CalibrationState& state, double* cost, BorderedSystem* system) const;
+  // Each gives its share of the cost, and adds to the system where there is one.
+  double add_reading(const CalibrationState& state, std::size_t index, double loss, BorderedSystem* system) const;
+  double add_reference(const CalibrationState& state, BorderedSystem* system) const;
+  double add_motion(const CalibrationState& state, BorderedSystem* system) const;
+  double add_priors(const CalibrationState& state, BorderedSystem* system) const;
+  double add_body_size(const CalibrationState& state, BorderedSystem* system) const;
+  std::vector<std::pair<Eigen::Index, double>> border_of(const LineDetector& detector, const PlacedReading& reading,
+                                                         const Eigen::Vector3d& p_world,
+                                                         const Eigen::RowVector3d& J) const;
 
   CalibrationState start_;
   std::vector<PlacedReading> readings_;

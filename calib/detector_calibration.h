@@ -16,57 +16,64 @@
 namespace alidade {
 
 struct DetectorCalibrationOptions {
-  double knot_interval_s = 0.02;  ///< of the estimated motion; a reading is taken at its own time between two knots
-  MotionDensity density;          ///< how abruptly the body moves
-  double longest_gap_s = 0.3;     ///< beyond it without readings the motion before says nothing of the one after
+  double knot_interval_s = 0.02;  ///< of the estimated motion; every reading is taken at its own time between two knots
+  MotionDensity density;          ///< how abruptly the body moves; a tenth or ten times of it changes little
+  double longest_gap_s = 0.3;     ///< beyond it without readings, the motion before says nothing of the one after
   double loss_sigmas = 3.0;       ///< Geman–McClure's scale: a reading far beyond it counts for nothing
-  bool hold_stations = false;     ///< only the motion is estimated, with the detectors as they are
+  bool hold_detectors = false;    ///< only the motion is estimated, with detectors and body as they are
   std::string held_station;       ///< whose pose stands and gives the world its frame; empty: the first detector's
-  double station_sigma_m = 0.0;   ///< how well the given positions of the stations are known; 0: not at all
-  double station_sigma_rad = 0.0;
-  SweepTerms term_sigma;        ///< how well factory terms are known, rad; 0: exactly
-  double marker_sigma_m = 0.0;  ///< how well the body's markers are known, about their mean; 0: exactly
-  int max_iterations = 60;
+  SweepTerms term_sigma;          ///< how well the factory terms are known, rad; 0: they stand
+  double marker_sigma_m = 0.0;    ///< how well the places of the body's markers are known; 0: they stand
+  double body_size_sigma = 1e-4;  ///< how well its size is known (a part of it), which alone gives the rig its scale
+  int max_iterations = 60;        ///< ten to fifty are usual
 };
 
-/// Where a point of the body was, in a frame of its own, at a clock's time that may be off.
+/// Throws std::invalid_argument naming the field, its value and its bound.
+void validate(const DetectorCalibrationOptions& options);
+
+/// Where a point of the body was, in a frame of its own: motion capture.
 struct ReferencePosition {
   Timestamp time{};
   Eigen::Vector3d p_reference = Eigen::Vector3d::Zero();  ///< m
 };
 struct MotionReference {
   std::vector<ReferencePosition> positions;
-  double sigma_m = 2e-3;  ///< of each coordinate
+  double sigma_m = 2e-3;  ///< of each coordinate, its clock's error included
 };
 
-/// What the readings of one detector, or of one marker, are off by from the estimate.
+/// How far the readings of one detector, or of one marker, are from the estimate, in units of their standard deviation.
 struct ReadingStatistics {
   int count = 0;
-  int inlier_count = 0;  ///< within loss_sigmas
-  double median = 0.0;   ///< of the absolute residuals, in the readings' unit
-  double rms = 0.0;      ///< of the inliers' residuals
+  int inlier_count = 0;        ///< within loss_sigmas
+  double median_sigmas = 0.0;  ///< of the absolute residuals
+  double rms_sigmas = 0.0;     ///< of the inliers' residuals
 };
 
 enum class CalibrationOutcome {
   Refined,
-  TooFewReadings,  ///< of a station, or in all
+  TooFewReadings,  ///< fewer than 24 in all, or than 24 of a station
   NoStart,         ///< no pose of the body explains the first readings
-  Undetermined,    ///< the body moves too little, or the stations do not see it at the same times
+  Undetermined,    ///< the body moves too little or is too small, or the stations do not see it at the same times
 };
 
 struct DetectorCalibration {
   CalibrationOutcome outcome = CalibrationOutcome::Refined;
-  DetectorRig rig;  ///< with the covariances of the stations that moved, given the held one
-  RigidBody body;
-  Trajectory motion;  ///< T_world_body at the knots that have readings beside them
-  std::map<int, ReadingStatistics> by_detector, by_marker;
-  /// Of the reference, where one was given: T_reference_world, and the reference's point in the body.
+  DetectorRig rig;    ///< with the covariances of the stations that moved, given the held one
+  RigidBody body;     ///< its markers where marker_sigma_m lets them move
+  Trajectory motion;  ///< T_world_body at the knots, in order of time
+  std::map<int, ReadingStatistics> by_detector, by_marker;  ///< by their ids
+  /// The reference's frame and point, where one was given.
   Eigen::Isometry3d T_reference_world = Eigen::Isometry3d::Identity();
   Eigen::Vector3d p_body_reference = Eigen::Vector3d::Zero();
   int iterations = 0;
-  double cost = 0;
 };
 
+/// Finds where the stations of `detectors` stand from readings of a moving body of known size: a robust bundle over the
+/// poses of all stations but one, the body's motion (cubic between knots, white-noise acceleration), and as options say
+/// factory terms and markers; with a `reference` (null: without), where a point of the body was at times. Starts from
+/// the given poses, which may be off by some degrees; readings of unknown detectors and markers are passed over, wrong
+/// ids are borne (a third of all). Readings in order of time. With an outcome other than Refined the rig is as it was
+/// given. Deterministic. Throws std::invalid_argument for options out of bounds, no detectors or no markers.
 DetectorCalibration calibrate_detectors(std::span<const LineDetector> detectors, const RigidBody& body,
                                         std::span<const LineReading> readings,
                                         const DetectorCalibrationOptions& options = {},

@@ -22,7 +22,12 @@ double median_of(std::vector<double> values) {
   return *middle;
 }
 
+// How far all readings of a detector may be off together while its station is not calibrated, in their sigmas: the
+// body's attitude then comes from how its markers' readings differ.
+constexpr double kCommonOffset = 100.0;
+
 struct Linearised {
+  std::size_t detector = 0;
   double sigmas = 0.0;  // residual
   Eigen::Matrix<double, 1, 6> J;
 };
@@ -36,6 +41,7 @@ std::vector<Linearised> linearise(const Scene& scene, std::span<const PlacedRead
     if (!projection) continue;
     const Eigen::RowVector3d J = projection->J_value_point * T.linear() / reading.sigma;
     Linearised row;
+    row.detector = reading.detector;
     row.sigmas = residual(detector.model, reading.value, projection->value) / reading.sigma;
     row.J << J, -J * skew(p_body);
     rows.push_back(row);
@@ -47,6 +53,50 @@ double median_sigmas(const std::vector<Linearised>& rows) {
   std::vector<double> absolute;
   for (const Linearised& row : rows) absolute.push_back(std::abs(row.sigmas));
   return median_of(absolute);
+}
+
+// The rows without what the median reading of their detector is off by, shrunk by its prior.
+std::vector<Linearised> without_common_offsets(const Scene& scene, std::vector<Linearised> rows) {
+  for (std::size_t d = 0; d < scene.detectors.size(); ++d) {
+    std::vector<double> sigmas;
+    for (const Linearised& row : rows) {
+      if (row.detector == d) sigmas.push_back(row.sigmas);
+    }
+    if (sigmas.empty()) continue;
+    const double information = static_cast<double>(sigmas.size());
+    const double offset = median_of(sigmas) * information / (information + 1.0 / (kCommonOffset * kCommonOffset));
+    for (Linearised& row : rows) row.sigmas -= row.detector == d ? offset : 0.0;
+  }
+  return rows;
+}
+
+// Gauss–Newton's system for the pose, one offset per detector eliminated.
+struct PoseSystem {
+  Matrix6d H;
+  Vector6d g;
+};
+
+PoseSystem build_system(const Scene& scene, const std::vector<Linearised>& rows, const Vector6d& prior,
+                        const Vector6d& to_prior) {
+  const auto residuals = without_common_offsets(scene, rows);
+  const double scale = std::max(3.0, 3.0 * median_sigmas(residuals));
+  std::vector<double> weight(scene.detectors.size(), 1.0 / (kCommonOffset * kCommonOffset)), sum(weight.size(), 0.0);
+  std::vector<Eigen::Matrix<double, 1, 6>> slope(weight.size(), Eigen::Matrix<double, 1, 6>::Zero());
+  PoseSystem system{prior.asDiagonal(), prior.cwiseProduct(to_prior)};
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double w = 1.0 / (1.0 + residuals[i].sigmas * residuals[i].sigmas / (scale * scale));
+    const std::size_t d = rows[i].detector;
+    system.H += w * rows[i].J.transpose() * rows[i].J;
+    system.g += w * rows[i].J.transpose() * rows[i].sigmas;
+    weight[d] += w;
+    sum[d] += w * rows[i].sigmas;
+    slope[d] += w * rows[i].J;
+  }
+  for (std::size_t d = 0; d < weight.size(); ++d) {
+    system.H -= slope[d].transpose() * slope[d] / weight[d];
+    system.g -= slope[d].transpose() * (sum[d] / weight[d]);
+  }
+  return system;
 }
 
 // Where the planes of all readings come nearest to meeting, the body taken as a point; Cauchy weights.
@@ -92,18 +142,11 @@ std::optional<RoughPose> refine_pose(const Scene& scene, std::span<const PlacedR
   Isometry3d T = guess;
   Vector6d prior;
   prior << Vector3d::Constant(1.0 / (prior_m * prior_m)), Vector3d::Constant(1.0 / (prior_rad * prior_rad));
-  for (int iteration = 0; iteration < 12; ++iteration) {
+  for (int iteration = 0; iteration < 15; ++iteration) {
     const auto rows = linearise(scene, readings, T);
     if (rows.empty()) return std::nullopt;
-    const double scale = std::max(3.0, 3.0 * median_sigmas(rows));
-    Matrix6d H = prior.asDiagonal();
-    Vector6d g = prior.cwiseProduct(difference(T, guess));
-    for (const Linearised& row : rows) {
-      const double w = 1.0 / (1.0 + row.sigmas * row.sigmas / (scale * scale));
-      H += w * row.J.transpose() * row.J;
-      g += w * row.J.transpose() * row.sigmas;
-    }
-    const Vector6d step = H.ldlt().solve(g);
+    const PoseSystem system = build_system(scene, rows, prior, difference(T, guess));
+    const Vector6d step = system.H.ldlt().solve(system.g);
     if (!step.allFinite()) return std::nullopt;
     const double longest = std::max(step.head<3>().norm() / 0.5, step.tail<3>().norm() / 0.7);
     T = T * perturbation(longest > 1 ? Vector6d(step / longest) : step);
@@ -111,7 +154,7 @@ std::optional<RoughPose> refine_pose(const Scene& scene, std::span<const PlacedR
   }
   const auto rows = linearise(scene, readings, T);
   if (rows.size() * 2 < readings.size() || rows.empty()) return std::nullopt;
-  return RoughPose{T, median_sigmas(rows)};
+  return RoughPose{T, median_sigmas(without_common_offsets(scene, rows))};
 }
 
 std::optional<RoughPose> find_pose(const Scene& scene, std::span<const PlacedReading> readings) {
