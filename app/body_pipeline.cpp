@@ -12,11 +12,6 @@
 namespace alidade {
 namespace {
 
-// A batch of 4 ms of a 250 Hz recording is one frame of it: the reading 4 ms after its first is in the next.
-RecordingClock::duration half_open(double span_s) {
-  return from_seconds(span_s) - RecordingClock::duration(1);
-}
-
 bool is_smoothed(const BodyTrackOptions& options) {
   return options.lag_s > 0 && options.method == BodyMethod::Ours;
 }
@@ -75,7 +70,7 @@ BodyPipeline::BodyPipeline(std::span<const LineDetector> detectors, std::span<co
       options_(options),
       record_(record),
       live_(std::move(live)),
-      batches_(half_open(options.batch_s)) {
+      batches_(from_seconds(options.batch_s)) {
   validate(options);
   options_.ours.start.update = options.ours.update;
   for (const RigidBody& body : bodies) {

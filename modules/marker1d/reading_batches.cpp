@@ -7,7 +7,8 @@ namespace alidade {
 
 std::optional<ReadingBatch> ReadingBatches::add(const LineReading& reading) {
   std::optional<ReadingBatch> before;
-  if (!readings_.empty() && reading.time - readings_.front().time > span_) before = finish();
+  const auto age = readings_.empty() ? RecordingClock::duration(0) : reading.time - readings_.front().time;
+  if (age > RecordingClock::duration(0) && age >= span_) before = finish();
   readings_.push_back(reading);
   return before;
 }

@@ -14,7 +14,8 @@ struct ReadingBatch {
   std::vector<LineReading> readings;
 };
 
-/// Cuts a stream of readings into batches: what lies within a span of time after its first reading.
+/// Cuts a stream of readings into batches: what lies less than a span of time after its first reading, or at the same
+/// time.
 class ReadingBatches {
  public:
   explicit ReadingBatches(RecordingClock::duration span) : span_(span) {}

@@ -13,14 +13,14 @@ LineReading at_ms(int ms) {
 TEST(ReadingBatches, EndWhereTheSpanIsOver) {
   ReadingBatches batches(std::chrono::milliseconds(4));
   EXPECT_FALSE(batches.add(at_ms(10)));
-  EXPECT_FALSE(batches.add(at_ms(14)));
-  const auto first = batches.add(at_ms(15));
+  EXPECT_FALSE(batches.add(at_ms(13)));
+  const auto first = batches.add(at_ms(14));
   ASSERT_TRUE(first);
   EXPECT_EQ(first->readings.size(), 2U);
-  EXPECT_EQ(first->time, Timestamp(std::chrono::milliseconds(12)));
+  EXPECT_EQ(first->time, Timestamp(std::chrono::microseconds(11500)));
   const auto last = batches.finish();
   ASSERT_TRUE(last);
-  EXPECT_EQ(last->time, Timestamp(std::chrono::milliseconds(15)));
+  EXPECT_EQ(last->time, Timestamp(std::chrono::milliseconds(14)));
   EXPECT_FALSE(batches.finish());
 }
 
