@@ -6,6 +6,7 @@
 
 #include "io/body_file.h"
 #include "io/detector_file.h"
+#include "io/trajectory_file.h"
 #include "tests/support/temporary_directory.h"
 
 namespace alidade {

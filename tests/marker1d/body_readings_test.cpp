@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "marker1d/body_readings.h"
 
+#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include "datasets/body_scene.h"

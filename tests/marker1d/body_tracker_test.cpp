@@ -132,7 +132,9 @@ TEST(BodyTracker, IsLostWithoutReadingsAndStartsAgain) {
   while (const auto frame = scene.next()) {
     const bool is_dark = frame_index >= 100 && frame_index < 300;
     estimate = tracker.track(frame->time, is_dark ? std::vector<LineReading>{} : frame->readings);
-    if (frame_index == 299) EXPECT_EQ(estimate.status, BodyStatus::Lost);
+    if (frame_index == 299) {
+      EXPECT_EQ(estimate.status, BodyStatus::Lost);
+    }
     ++frame_index;
   }
   EXPECT_EQ(estimate.status, BodyStatus::Tracked);
