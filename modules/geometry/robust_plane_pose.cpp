@@ -16,12 +16,15 @@ struct Share {
   Lanes curvature;
 };
 
-// ρ(s) = c² s / (c² + s): ρ' = u² and ρ' + 2 s ρ'' = u² (4 u - 3) with u = c² / (c² + s).
+// ρ(s) = c² s / (c² + s): ρ' = u² and ρ' + 2 s ρ'' = u² (4 u - 3) with u = c² / (c² + s). The curvature is kept above a
+// share of the weight: all of it (mere reweighting) is safe from afar, a small one leaves Newton's steps nearby.
 struct GemanMcClure {
   double c2;
+  double least_curvature;
   Share operator()(const Lanes& chi2) const {
     const Lanes u = c2 / (c2 + chi2);
-    return {u * u, u * u * (4.0 * u - 3.0)};
+    const Lanes weight = u * u;
+    return {weight, weight * (4.0 * u - 3.0).max(least_curvature)};
   }
 };
 
@@ -53,25 +56,24 @@ struct PairOfPlanes {
 struct PointSum {
   Lanes xx = Lanes::Zero(), yx = Lanes::Zero(), zx = Lanes::Zero(), yy = Lanes::Zero(), zy = Lanes::Zero();
   Lanes zz = Lanes::Zero(), rx = Lanes::Zero(), ry = Lanes::Zero(), rz = Lanes::Zero();
-  Lanes share = Lanes::Zero(), curvature = Lanes::Zero();
+  Lanes share = Lanes::Zero();
 
   template <class Loss>
   void add(const PairOfPlanes& planes, const Eigen::Vector3d& p_world, Loss loss) {
     const Lanes r = planes.distance(p_world);
     const Share s = loss(planes.weight * r * r);
-    const Lanes weight = s.weight * planes.weight;
-    const Lanes x = weight * planes.x, y = weight * planes.y, z = weight * planes.z;
+    const Lanes curvature = s.curvature * planes.weight, pull = s.weight * planes.weight * r;
+    const Lanes x = curvature * planes.x, y = curvature * planes.y, z = curvature * planes.z;
     xx += x * planes.x;
     yx += y * planes.x;
     zx += z * planes.x;
     yy += y * planes.y;
     zy += z * planes.y;
     zz += z * planes.z;
-    rx += x * r;
-    ry += y * r;
-    rz += z * r;
+    rx += pull * planes.x;
+    ry += pull * planes.y;
+    rz += pull * planes.z;
     share += s.weight;
-    curvature += s.curvature;
   }
 };
 
@@ -83,7 +85,6 @@ struct WorldEquations {
   Eigen::Vector3d pull = Eigen::Vector3d::Zero();         // Σ n residual
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();       // Σ arm × n residual
   double share = 0.0;                                     // how many constraints take part
-  double curvature = 0.0;                                 // the same, by the curvature of the loss
 
   // The planes of a point at `arm` from the body's origin, along the world's axes.
   void add(const PointSum& sum, const Eigen::Vector3d& arm) {
@@ -103,9 +104,19 @@ struct WorldEquations {
     pull += point_pull;
     moment += arm.cross(point_pull);
     share += sum.share.sum();
-    curvature += sum.curvature.sum();
   }
 };
+
+// Of the right perturbation at T.
+Matrix6d information_of(const WorldEquations& sum, const Eigen::Isometry3d& T) {
+  const Eigen::Matrix3d R = T.linear();
+  Matrix6d information;
+  information.topLeftCorner<3, 3>() = R.transpose() * sum.translation * R;
+  information.bottomLeftCorner<3, 3>() = R.transpose() * sum.mixed * R;
+  information.bottomRightCorner<3, 3>() = R.transpose() * sum.rotation * R;
+  information.topRightCorner<3, 3>() = information.bottomLeftCorner<3, 3>().transpose();
+  return information;
+}
 
 struct Step {
   Eigen::Vector3d translation;
@@ -140,11 +151,11 @@ std::optional<Step> step_of(const WorldEquations& sum) {
   return step;
 }
 
-Eigen::Isometry3d moved(const Eigen::Isometry3d& T, const Step& step, double factor) {
-  const Eigen::Vector3d h = 0.5 * factor * step.rotation;
+Eigen::Isometry3d moved(const Eigen::Isometry3d& T, const Step& step) {
+  const Eigen::Vector3d h = 0.5 * step.rotation;
   Eigen::Isometry3d result = T;
   result.linear() = Eigen::Quaterniond(1.0, h.x(), h.y(), h.z()).normalized().toRotationMatrix() * T.linear();
-  result.translation() += factor * step.translation;
+  result.translation() += step.translation;
   return result;
 }
 
@@ -178,16 +189,30 @@ class PairedPlanes {
     return equations;
   }
 
-  // Reweighting alone takes steps that are too short, since the loss is less curved than the weights pretend: at one
-  // standard deviation by a third. Lengthened by that ratio, a step leaves a tenth instead.
+  // weight · distance² of each constraint, and zeros for what fills up pairs.
+  std::vector<Lanes> chi2_at(const Eigen::Isometry3d& T) const {
+    std::vector<Lanes> chi2;
+    chi2.reserve(pairs_.size());
+    for (const Point& point : points_) {
+      const Eigen::Vector3d p_world = T * point.p_body;
+      while (chi2.size() < point.end) {
+        const PairOfPlanes& pair = pairs_[chi2.size()];
+        chi2.push_back(pair.weight * pair.distance(p_world).square());
+      }
+    }
+    return chi2;
+  }
+
   Eigen::Isometry3d descend(Eigen::Isometry3d T, double width, int steps, double last_step) const {
-    constexpr double kLeastRatio = 0.6;
+    constexpr double kNear = 2.0;  // standard deviations
+    double least_curvature = 1.0;
     for (int i = 0; i < steps; ++i) {
-      const WorldEquations equations = equations_at(T, GemanMcClure{width});
-      const std::optional<Step> step = step_of(equations);
+      const std::optional<Step> step = step_of(equations_at(T, GemanMcClure{width, least_curvature}));
       if (!step) break;
-      T = moved(T, *step, 1.0 / std::max(kLeastRatio, equations.curvature / equations.share));
-      if (step->sigmas < last_step) break;
+      T = moved(T, *step);
+      // Newton's step leaves little undone, reweighting a seventh.
+      if (step->sigmas < (least_curvature < 1.0 ? last_step : 0.2 * last_step)) break;
+      least_curvature = step->sigmas < kNear ? 0.2 : 1.0;
     }
     return T;
   }
@@ -202,41 +227,40 @@ class PairedPlanes {
   std::vector<Point> points_;
 };
 
-double chi2_of(const PlaneConstraint& constraint, const Eigen::Isometry3d& T) {
-  const double r = distance(constraint.plane_world, T * constraint.p_body);
-  return constraint.weight * r * r;
+// So wide that half of the constraints keep four fifths of their weight: the first step then ends near the pose.
+double first_mu(const PairedPlanes& planes, const Eigen::Isometry3d& T, const RobustPlaneOptions& options) {
+  constexpr double kAmple = 8.0;
+  std::vector<Lanes> chi2 = planes.chi2_at(T);
+  const std::span<double> each(chi2.front().data(), 2 * chi2.size());
+  const auto half = each.begin() + static_cast<std::ptrdiff_t>(each.size() / 2);
+  std::nth_element(each.begin(), half, each.end());
+  return std::min(options.widest_mu, kAmple * *half / options.gate_chi2);
 }
 
-// Where half of the constraints lie within the gate times mu.
-double first_mu(Constraints constraints, const Eigen::Isometry3d& T, const RobustPlaneOptions& options) {
-  std::vector<double> chi2(constraints.size());
-  std::transform(constraints.begin(), constraints.end(), chi2.begin(), [&](const auto& c) { return chi2_of(c, T); });
-  const auto half = chi2.begin() + static_cast<std::ptrdiff_t>(chi2.size() / 2);
-  std::nth_element(chi2.begin(), half, chi2.end());
-  return std::min(options.widest_mu, *half / options.gate_chi2);
-}
-
-Eigen::Isometry3d graduate(Constraints constraints, const PairedPlanes& planes, Eigen::Isometry3d T,
-                           const RobustPlaneOptions& options, double last_step) {
+Eigen::Isometry3d graduate(const PairedPlanes& planes, Eigen::Isometry3d T, const RobustPlaneOptions& options,
+                           double last_step) {
   constexpr double kNarrowing = 0.2;
-  for (double mu = first_mu(constraints, T, options); mu > 1.0; mu *= kNarrowing) {
+  for (double mu = first_mu(planes, T, options); mu > 1.0; mu *= kNarrowing) {
     T = planes.descend(T, mu * options.gate_chi2, options.steps_per_stage, last_step);
   }
   return planes.descend(T, options.gate_chi2, options.max_iterations, last_step);
 }
 
+struct Settled {
+  Eigen::Isometry3d T_world_body;
+  WorldEquations equations;
+};
+
 // Least squares on what fits at the pose so far; each step decides anew what does. Empty where too few fit.
-std::optional<Eigen::Isometry3d> settle(const PairedPlanes& planes, Eigen::Isometry3d T,
-                                        const RobustPlaneOptions& options) {
+std::optional<Settled> settle(const PairedPlanes& planes, Eigen::Isometry3d T, const RobustPlaneOptions& options) {
   constexpr double kFine = 1e-3;  // standard deviations: what a step leaves undone is its square
-  for (int round = 0; round < options.max_iterations; ++round) {
+  for (int round = 1;; ++round) {
     const WorldEquations equations = planes.equations_at(T, Gate{options.gate_chi2});
     const std::optional<Step> step = step_of(equations);
     if (equations.share < options.least_inliers || !step) return std::nullopt;
-    T = moved(T, *step, 1.0);
-    if (step->sigmas < kFine) break;
+    T = moved(T, *step);
+    if (step->sigmas < kFine || round >= options.max_iterations) return Settled{T, equations};
   }
-  return T;
 }
 
 }  // namespace
@@ -244,29 +268,29 @@ std::optional<Eigen::Isometry3d> settle(const PairedPlanes& planes, Eigen::Isome
 Eigen::Isometry3d descend_robustly(Constraints constraints, const Eigen::Isometry3d& start,
                                    const RobustPlaneOptions& options, double last_step) {
   if (constraints.empty()) return start;
-  return graduate(constraints, PairedPlanes(constraints), start, options, last_step);
+  return graduate(PairedPlanes(constraints), start, options, last_step);
 }
 
 std::optional<RobustPlanePose> solve_robustly(Constraints constraints, const Eigen::Isometry3d& start,
                                               const RobustPlaneOptions& options) {
-  if (constraints.size() < static_cast<std::size_t>(options.least_inliers)) return std::nullopt;
+  if (constraints.empty()) return std::nullopt;
   constexpr double kRough = 0.3;  // standard deviations: what is left to settle()
   const PairedPlanes planes(constraints);
-  const auto T = settle(planes, graduate(constraints, planes, start, options, kRough), options);
-  if (!T) return std::nullopt;
-  RobustPlanePose result;
-  std::vector<PlaneConstraint> inliers;
-  inliers.reserve(constraints.size());
+  const auto settled = settle(planes, graduate(planes, start, options, kRough), options);
+  if (!settled) return std::nullopt;
+  const Eigen::Isometry3d& T = settled->T_world_body;
+  RobustPlanePose result{{T, 0.0, information_of(settled->equations, T)}, {}, 0};
+  if (determined_directions(result.pose.information) < 6) return std::nullopt;
   result.is_inlier.reserve(constraints.size());
   for (const PlaneConstraint& constraint : constraints) {
-    const bool fits = chi2_of(constraint, *T) <= options.gate_chi2;
-    if (fits) inliers.push_back(constraint);
+    const double r = distance(constraint.plane_world, T * constraint.p_body);
+    const double chi2 = constraint.weight * r * r;
+    const bool fits = chi2 <= options.gate_chi2;
     result.is_inlier.push_back(fits);
+    if (!fits) continue;
+    result.pose.chi2 += chi2;
+    ++result.inlier_count;
   }
-  result.inlier_count = static_cast<int>(inliers.size());
-  if (result.inlier_count < options.least_inliers) return std::nullopt;
-  result.pose = plane_pose_at(inliers, *T);
-  if (determined_directions(result.pose.information) < 6) return std::nullopt;
   return result;
 }
 

@@ -25,16 +25,16 @@ struct RobustPlanePose {
 };
 
 /// The pose from planes of which some are wrong, from a start: Gauss–Newton with Geman–McClure weights, whose width
-/// shrinks to the gate from where half of the planes are inside (graduated non-convexity); then least squares on those
-/// within the gate, until they stay the same. Empty where fewer than least_inliers are, or where they do not determine
-/// the pose. Keep constraints of one point together (see sum_planes).
-/// Source: Yang, Antonante, Tzoumas, Carlone, Graduated Non-Convexity, RA-L 2020.
+/// shrinks to the gate from where half of the planes are well inside (graduated non-convexity); then least squares on
+/// those within the gate, until they stay the same. Empty where fewer than least_inliers are, or where they do not
+/// determine the pose. Keep constraints of one point together (see sum_planes). Source: Yang, Antonante, Tzoumas,
+/// Carlone, Graduated Non-Convexity, RA-L 2020.
 std::optional<RobustPlanePose> solve_robustly(std::span<const PlaneConstraint> constraints,
                                               const Eigen::Isometry3d& start, const RobustPlaneOptions& options = {});
 
 /// Where the first half of solve_robustly ends: a minimum of Σ c² s / (c² + s), s = weight · distance², c² = gate_chi2,
-/// but for a step shorter than `last_step` standard deviations.
+/// but for a step shorter than `last_step` standard deviations, of which a fiftieth is left undone.
 Eigen::Isometry3d descend_robustly(std::span<const PlaneConstraint> constraints, const Eigen::Isometry3d& start,
-                                   const RobustPlaneOptions& options = {}, double last_step = 0.02);
+                                   const RobustPlaneOptions& options = {}, double last_step = 0.3);
 
 }  // namespace alidade
