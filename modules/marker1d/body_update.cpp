@@ -231,8 +231,10 @@ bool is_nearly_linear(const MotionState& state) {
 
 bool is_same(const MotionState& a, const MotionState& b) {
   const Vector6d off = difference(a.T_world_body, b.T_world_body);
-  const Matrix6d P = a.covariance.topLeftCorner<6, 6>() + b.covariance.topLeftCorner<6, 6>();
-  return off.dot(P.ldlt().solve(off)) < 9.0;
+  const auto is_near = [&off](const MotionState& state) {
+    return off.dot(state.covariance.topLeftCorner<6, 6>().ldlt().solve(off)) < 9.0;
+  };
+  return is_near(a) && is_near(b);
 }
 
 BodyUpdate update_body(const BodyReadings& readings, const MotionState& state, Timestamp time,

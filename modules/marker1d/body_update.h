@@ -42,7 +42,7 @@ std::vector<BodyUpdate> update_body_everywhere(const BodyReadings& readings, con
 /// Whether the state is so sure that readings are linear in what is left.
 bool is_nearly_linear(const MotionState& state);
 
-/// Whether two beliefs cannot be told apart: their poses differ by less than three standard deviations.
+/// Whether two beliefs cannot be told apart: their poses differ by less than three standard deviations of either.
 bool is_same(const MotionState& a, const MotionState& b);
 
 }  // namespace alidade

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "marker1d/body_start.h"
 
+#include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
 #include "datasets/body_scene.h"
@@ -29,7 +30,8 @@ Tally start_every(int frames, int every, const Keep& keep) {
     const auto candidates = start_body(detectors, scene.bodies().front(), readings, frame->time, 1.0);
     const Eigen::Isometry3d truth = pose_in_scene(0, frame->time);
     const bool holds_truth = std::any_of(candidates.begin(), candidates.end(), [&](const BodyCandidate& c) {
-      return difference(c.state.T_world_body, truth).head<3>().norm() < 0.02;
+      const Vector6d error = difference(c.state.T_world_body, truth);
+      return error.dot(c.state.covariance.topLeftCorner<6, 6>().ldlt().solve(error)) < 36.0;  // 2e-6
     });
     if (candidates.empty()) ++tally.none;
     if (candidates.size() == 1) ++tally.certain;
@@ -47,6 +49,8 @@ TEST(BodyStart, IsCertainAndRightWithFullInformation) {
 }
 
 // Detectors 0, 4, 8 are of three blocks. Three markers with two planes each: up to eight poses are exact.
+// Of two that lie close together noise may leave none, only a blunt minimum between or beside them: one frame in a
+// hundred of this scene.
 TEST(BodyStart, NamesAllPosesOfSixPlanes) {
   const Tally tally = start_every(5000, 25, [](const LineReading& r) {
     return (r.marker == 0 && (r.detector == 0 || r.detector == 5)) ||
@@ -54,7 +58,7 @@ TEST(BodyStart, NamesAllPosesOfSixPlanes) {
            (r.marker == 2 && (r.detector == 8 || r.detector == 2));
   });
   EXPECT_GT(tally.ambiguous, 100);
-  EXPECT_LE(tally.ambiguous_without_truth, 1);
+  EXPECT_LE(tally.ambiguous_without_truth, 2);
 }
 
 TEST(BodyStart, AnswersNothingFromOneMarker) {

@@ -142,10 +142,15 @@ TEST(BodyTracker, IsLostWithoutReadingsAndStartsAgain) {
   EXPECT_LT(error.head<3>().norm(), 0.002);
 }
 
-TEST(BodyTracker, DoesNotGuessFromOneBlock) {
-  BodySceneOptions options = scene_of(20);
-  options.blocks = 1;
-  EXPECT_EQ(tracked(options).tracked, 0);
+// Two markers leave the turn about their line open, however many planes there are.
+TEST(BodyTracker, DoesNotGuessFromTwoMarkers) {
+  BodyScene scene(scene_of(20));
+  const DetectorArray detectors(scene.detectors());
+  BodyTracker tracker(detectors, scene.bodies().front());
+  while (auto frame = scene.next()) {
+    std::erase_if(frame->readings, [](const LineReading& r) { return r.marker > 1; });
+    EXPECT_EQ(tracker.track(frame->time, frame->readings).status, BodyStatus::Lost);
+  }
 }
 
 TEST(BodyTracker, NamesTheOptionThatIsWrong) {
