@@ -17,27 +17,30 @@ BorderedSystem::BorderedSystem(std::size_t knots, Eigen::Index border_size)
 // in information form. The way back gives the knots from the border.
 std::optional<BorderedSolution> solve(BorderedSystem s, double damping) {
   const std::size_t n = s.diagonal.size();
+  const Eigen::Index border_size = s.corner.rows();
+  const bool has_border = border_size > 0;
   for (auto& block : s.diagonal) block.diagonal() *= 1.0 + damping;
-  s.corner.diagonal() *= 1.0 + damping;
+  if (has_border) s.corner.diagonal() *= 1.0 + damping;
   std::vector<Eigen::LLT<BorderedSystem::Block>> factors;
   factors.reserve(n);
   for (std::size_t i = 0; i < n; ++i) {
     const auto& factor = factors.emplace_back(s.diagonal[i]);
     if (factor.info() != Eigen::Success) return std::nullopt;
     const BorderedSystem::BlockVector g = factor.solve(s.gradient[i]);
-    const Eigen::MatrixXd toward_border = factor.solve(s.border[i].transpose());  // 12 × border
-    s.corner.noalias() -= s.border[i] * toward_border;
-    s.border_gradient.noalias() -= s.border[i] * g;
+    if (has_border) {
+      const Eigen::MatrixXd toward_border = factor.solve(s.border[i].transpose());  // 12 × border
+      s.corner.noalias() -= s.border[i] * toward_border;
+      s.border_gradient.noalias() -= s.border[i] * g;
+    }
     if (i + 1 == n) break;
     const BorderedSystem::Block toward_next = factor.solve(s.coupling[i].transpose());
     s.diagonal[i + 1].noalias() -= s.coupling[i] * toward_next;
     s.gradient[i + 1].noalias() -= s.coupling[i] * g;
-    s.border[i + 1].noalias() -= s.border[i] * toward_next;
+    if (has_border) s.border[i + 1].noalias() -= s.border[i] * toward_next;
   }
   BorderedSolution solution;
-  const Eigen::Index border_size = s.corner.rows();
   solution.border = Eigen::VectorXd::Zero(border_size);
-  if (border_size > 0) {
+  if (has_border) {
     const Eigen::LLT<Eigen::MatrixXd> corner(s.corner);
     if (corner.info() != Eigen::Success) return std::nullopt;
     solution.border = corner.solve(s.border_gradient);
@@ -45,7 +48,8 @@ std::optional<BorderedSolution> solve(BorderedSystem s, double damping) {
   }
   solution.knots.resize(n);
   for (std::size_t i = n; i-- > 0;) {
-    BorderedSystem::BlockVector g = s.gradient[i] - s.border[i].transpose() * solution.border;
+    BorderedSystem::BlockVector g = s.gradient[i];
+    if (has_border) g -= s.border[i].transpose() * solution.border;
     if (i + 1 < n) g -= s.coupling[i].transpose() * solution.knots[i + 1];
     solution.knots[i] = factors[i].solve(g);
   }
