@@ -56,7 +56,7 @@ struct Recording {
 };
 
 // All stations but the first stand 2 cm and 1° off; a share of the readings bears the id of another marker.
-Recording record(unsigned seed, double wrong_ids, double duration_s = 3.0, double step_s = 0.016) {
+Recording record(unsigned seed, double wrong_ids, double duration_s = 1.0, double step_s = 0.016) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform;
@@ -128,10 +128,10 @@ TEST(DetectorCalibration, BearsWrongIds) {
 TEST(DetectorCalibration, FollowsTheBodyAtEveryMoment) {
   const Recording recording = record(3, 0.0);
   const auto found = calibrate_detectors(recording.start, tetrahedron(), recording.readings);
-  ASSERT_GT(found.motion.size(), 140u);
+  ASSERT_GT(found.motion.size(), 45u);
   for (const StampedPose& pose : found.motion) {
     const Vector6d xi = difference(pose.T_world_camera, true_pose(to_seconds(pose.time.time_since_epoch())));
-    EXPECT_LT(xi.head<3>().norm(), pose.time < Timestamp(from_seconds(2.98)) ? 2e-3 : 0.1);
+    EXPECT_LT(xi.head<3>().norm(), pose.time < Timestamp(from_seconds(0.98)) ? 2e-3 : 0.1);
   }
 }
 
