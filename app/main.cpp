@@ -33,6 +33,7 @@ ExitCode run(int argc, char** argv) {
       .tell = [&display](const std::string& line) { display.tell(line); },
       .warn = [&display](const std::string& line) { display.warn(line); },
       .publish = [&display](const nlohmann::json& result) { display.publish(result); },
+      .stream = [&display](const nlohmann::json& event) { display.stream(event); },
       .arguments = {argv, argv + argc},
   };
   const ExitCode code = request->command->run(context);

@@ -129,6 +129,12 @@ void ProgressDisplay::publish(const nlohmann::json& result) {
   write_json(event);
 }
 
+void ProgressDisplay::stream(const nlohmann::json& event) {
+  const std::scoped_lock lock(mutex_);
+  erase_bar();
+  write_json(event);
+}
+
 DisplayStyle choose_style(bool quiet, bool json) {
   if (quiet) return DisplayStyle::Quiet;
   if (json) return DisplayStyle::Json;

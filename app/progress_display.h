@@ -17,7 +17,7 @@ enum class DisplayStyle { Bar, Lines, Json, Quiet };
 
 /// The one place that writes to stdout and stderr while a verb runs; callable from any thread.
 /// Bar, lines and warnings go to stderr, results and JSON to stdout. JSON lines have "event": "progress" (stage, done,
-/// total, message), "message" (text), "warning" (text) or "result" (the verb's summary).
+/// total, message), "message" (text), "warning" (text) or "result" (the verb's summary); a live feed has its own.
 class ProgressDisplay {
  public:
   using Clock = std::chrono::steady_clock;
@@ -30,6 +30,7 @@ class ProgressDisplay {
   void tell(const std::string& line);
   void warn(const std::string& line);
   void publish(const nlohmann::json& result);
+  void stream(const nlohmann::json& event);  ///< a live feed: in every style, Quiet too
 
  private:
   void draw_bar(const Progress& progress, Clock::time_point now);

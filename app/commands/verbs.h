@@ -12,8 +12,10 @@ namespace alidade {
 std::vector<Verb> all_verbs();
 
 Verb track_camera_verb();
+Verb track_body_verb();
 Verb map_verb();
 Verb simulate_camera_verb();
+Verb simulate_body_verb();
 Verb experiment_camera_verb();
 Verb evaluate_verb();
 Verb view_verb();

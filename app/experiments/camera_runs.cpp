@@ -6,11 +6,11 @@
 
 #include <Eigen/LU>
 
+#include "estimation/motion_learning.h"
+#include "estimation/state_smoother.h"
 #include "reconstruction/map_point.h"
 #include "tracking/map_offset.h"
-#include "tracking/motion_learning.h"
 #include "tracking/paper_filter.h"
-#include "tracking/state_smoother.h"
 
 namespace alidade {
 namespace {
@@ -34,25 +34,25 @@ std::vector<PointObservation> with_sigma(std::vector<PointObservation> observati
   return observations;
 }
 
-StampedPose stamped(const CameraState& state) {
-  return {state.time, state.T_world_camera, Matrix6d(state.covariance.topLeftCorner<6, 6>())};
+StampedPose stamped(const MotionState& state) {
+  return {state.time, state.T_world_body, Matrix6d(state.covariance.topLeftCorner<6, 6>())};
 }
 
 // The paper's model has none.
-void forget_accelerations(CameraState& state) {
+void forget_accelerations(MotionState& state) {
   state.covariance.bottomRows<6>().setZero();
   state.covariance.rightCols<6>().setZero();
 }
 
 // log p(z) of the paper's filter over a run, its sightings taken as Gaussian about the prediction (eqs. 8-13).
 double paper_log_evidence(const Camera& camera, const CameraRun& run, const MotionNoise& noise, double sigma_px) {
-  CameraState state = moving_state(run.truth[0], run.truth[1]);
+  MotionState state = moving_state(run.truth[0], run.truth[1]);
   forget_accelerations(state);
   double sum = 0.0;
   for (std::size_t k = kFirst; k < run.truth.size(); ++k) {
-    const CameraState predicted = predict(state, run.truth[k].time, noise);
+    const MotionState predicted = predict(state, run.truth[k].time, noise);
     const std::vector<PointObservation> observations = with_sigma(run.sightings[k], sigma_px);
-    PosePrior prior{predicted.T_world_camera, predicted.covariance.topLeftCorner<6, 6>().inverse()};
+    PosePrior prior{predicted.T_world_body, predicted.covariance.topLeftCorner<6, 6>().inverse()};
     PoseUpdateOptions options;
     options.map_uncertainty = MapUncertainty::Ignored;
     const auto update = update_pose(camera, prior, observations, options);
@@ -149,7 +149,7 @@ Trajectory estimate_by_ransac(const Camera& camera, const CameraRun& run, double
 Trajectory estimate_by_paper_filter(const Camera& camera, const CameraRun& run, const MotionNoise& noise,
                                     double sigma_px) {
   Trajectory estimate;
-  CameraState state = moving_state(run.truth[0], run.truth[1]);
+  MotionState state = moving_state(run.truth[0], run.truth[1]);
   forget_accelerations(state);
   for (std::size_t k = kFirst; k < run.truth.size(); ++k) {
     state =
@@ -162,7 +162,7 @@ Trajectory estimate_by_paper_filter(const Camera& camera, const CameraRun& run, 
 std::vector<MotionStep> filter_run(const Camera& camera, const CameraRun& run, const CameraFilterOptions& options,
                                    SharedMapError shared) {
   std::vector<MotionStep> steps;
-  CameraState state = moving_state(run.truth[0], run.truth[1]);
+  MotionState state = moving_state(run.truth[0], run.truth[1]);
   if (shared == SharedMapError::Considered) state.map_offset = rigid_offset(run.sightings[kFirst]);
   SightingNoise noise;
   for (std::size_t k = kFirst; k < run.truth.size(); ++k) {
@@ -185,7 +185,7 @@ Trajectory causal_poses(std::span<const MotionStep> steps) {
 
 Trajectory smoothed_poses(std::span<const MotionStep> steps, int lag) {
   Trajectory poses;
-  for (const CameraState& state : smoothed_states(steps, lag)) poses.push_back(stamped(state));
+  for (const MotionState& state : smoothed_states(steps, lag)) poses.push_back(stamped(state));
   return poses;
 }
 

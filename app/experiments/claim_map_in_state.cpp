@@ -39,7 +39,7 @@ struct Filter {
 };
 
 std::vector<Filter> filters(const Camera& camera) {
-  const FrameUpdate paper = [camera](const CameraState& predicted, std::span<const PointObservation> seen) {
+  const FrameUpdate paper = [camera](const MotionState& predicted, std::span<const PointObservation> seen) {
     return update_paper_filter(camera, predicted, seen);
   };
   return {{kInState,
@@ -51,7 +51,7 @@ std::vector<Filter> filters(const Camera& camera) {
              return estimate_at_constant_velocity(run, constant_velocity_start(run.truth), noise, paper);
            }},
           {kOurs, [ours = iterated_update(camera)](const CameraRun& run, const MotionNoise& noise) {
-             CameraState start = constant_velocity_start(run.truth);
+             MotionState start = constant_velocity_start(run.truth);
              start.map_offset = rigid_offset(run.sightings[2]);
              return estimate_at_constant_velocity(run, start, noise, ours);
            }}};

@@ -22,15 +22,15 @@ const std::string kWide = "unscented, wide";
 const std::string kIterated = "iterated";
 
 // A start that is off by what its covariance says.
-CameraState poor_start(const CameraRun& run) {
-  CameraState start = constant_velocity_start(run.truth);
-  const double distance_m = start.T_world_camera.translation().norm();
+MotionState poor_start(const CameraRun& run) {
+  MotionState start = constant_velocity_start(run.truth);
+  const double distance_m = start.T_world_body.translation().norm();
   const Matrix6d P = isotropic_noise(kPoorShare * distance_m, kPoorTurnRad);
   std::mt19937_64 random(run.number);
   std::normal_distribution<double> normal;
   Vector6d error;
   for (int i = 0; i < 6; ++i) error(i) = normal(random) * std::sqrt(P(i, i));
-  start.T_world_camera = start.T_world_camera * perturbation(error);
+  start.T_world_body = start.T_world_body * perturbation(error);
   start.covariance.topLeftCorner<6, 6>() = P;
   return start;
 }
@@ -39,22 +39,22 @@ std::vector<CameraMethod> filters(const CameraScene& scene, const MotionNoise& n
   const Camera& camera = scene.camera;
   const std::vector<std::pair<std::string, FrameUpdate>> updates{
       {kPaper,
-       [camera](const CameraState& predicted, std::span<const PointObservation> seen) {
+       [camera](const MotionState& predicted, std::span<const PointObservation> seen) {
          return update_paper_filter(camera, predicted, seen);
        }},
       {kUnscented,
-       [camera](const CameraState& predicted, std::span<const PointObservation> seen) {
+       [camera](const MotionState& predicted, std::span<const PointObservation> seen) {
          return update_unscented_filter(camera, predicted, seen);
        }},
       {kWide,
-       [camera](const CameraState& predicted, std::span<const PointObservation> seen) {
+       [camera](const MotionState& predicted, std::span<const PointObservation> seen) {
          return update_unscented_filter(camera, predicted, seen, {.alpha = 1.0});
        }},
       {kIterated, iterated_update(camera)}};
   std::vector<CameraMethod> methods;
   for (const auto& [name, update] : updates) {
     methods.push_back([noise, is_poor, name, update](const CameraRun& run) {
-      const CameraState start = is_poor ? poor_start(run) : constant_velocity_start(run.truth);
+      const MotionState start = is_poor ? poor_start(run) : constant_velocity_start(run.truth);
       return NamedTrajectories{{name, estimate_at_constant_velocity(run, start, noise, update)}};
     });
   }

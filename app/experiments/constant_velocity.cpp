@@ -9,17 +9,17 @@
 namespace alidade {
 namespace {
 
-StampedPose stamped(const CameraState& state) {
-  return {state.time, state.T_world_camera, Matrix6d(state.covariance.topLeftCorner<6, 6>())};
+StampedPose stamped(const MotionState& state) {
+  return {state.time, state.T_world_body, Matrix6d(state.covariance.topLeftCorner<6, 6>())};
 }
 
 }  // namespace
 
-CameraState constant_velocity_start(const Trajectory& truth) {
+MotionState constant_velocity_start(const Trajectory& truth) {
   return camera_of(slam_state(moving_state(truth[0], truth[1])));
 }
 
-Trajectory estimate_at_constant_velocity(const CameraRun& run, CameraState state, const MotionNoise& noise,
+Trajectory estimate_at_constant_velocity(const CameraRun& run, MotionState state, const MotionNoise& noise,
                                          const FrameUpdate& update) {
   Trajectory estimate;
   for (std::size_t k = 2; k < run.truth.size(); ++k) {
@@ -29,7 +29,7 @@ Trajectory estimate_at_constant_velocity(const CameraRun& run, CameraState state
   return estimate;
 }
 
-Trajectory estimate_with_map_in_state(const Camera& camera, const CameraRun& run, const CameraState& start,
+Trajectory estimate_with_map_in_state(const Camera& camera, const CameraRun& run, const MotionState& start,
                                       const MotionNoise& noise) {
   std::vector<SlamPoint> points;
   for (const PointObservation& o : run.sightings.front()) points.push_back({o.p_world, o.covariance_world, {}});
@@ -49,10 +49,10 @@ Trajectory estimate_with_map_in_state(const Camera& camera, const CameraRun& run
 FrameUpdate iterated_update(const Camera& camera) {
   PoseUpdateOptions options;  // without outliers, no gate
   options.gate_chi2 = options.loosest_gate_px = 1e6;
-  return [camera, options](const CameraState& predicted, std::span<const PointObservation> observations) {
+  return [camera, options](const MotionState& predicted, std::span<const PointObservation> observations) {
     const std::vector<PointObservation> apart =
         apart_from(predicted.map_offset, {observations.begin(), observations.end()});
-    const PosePrior prior{predicted.T_world_camera, covariance_in_map(predicted).inverse()};
+    const PosePrior prior{predicted.T_world_body, covariance_in_map(predicted).inverse()};
     const auto update = update_pose(camera, prior, apart, options);
     return update ? absorb(predicted, update->sightings) : predicted;
   };

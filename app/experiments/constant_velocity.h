@@ -9,18 +9,18 @@
 namespace alidade {
 
 /// moving_state() as the paper's model has it: without accelerations.
-CameraState constant_velocity_start(const Trajectory& truth);
+MotionState constant_velocity_start(const Trajectory& truth);
 
 /// What a filter makes of a prediction and a frame.
 using FrameUpdate =
-    std::function<CameraState(const CameraState& predicted, std::span<const PointObservation> observations)>;
+    std::function<MotionState(const MotionState& predicted, std::span<const PointObservation> observations)>;
 
 /// Poses from the third frame on of a filter that starts from a state at the second; all such filters predict alike.
-Trajectory estimate_at_constant_velocity(const CameraRun& run, CameraState start, const MotionNoise& noise,
+Trajectory estimate_at_constant_velocity(const CameraRun& run, MotionState start, const MotionNoise& noise,
                                          const FrameUpdate& update);
 
 /// The same with the run's points in the filter's state.
-Trajectory estimate_with_map_in_state(const Camera& camera, const CameraRun& run, const CameraState& start,
+Trajectory estimate_with_map_in_state(const Camera& camera, const CameraRun& run, const MotionState& start,
                                       const MotionNoise& noise);
 
 /// Our iterated update with every sighting taken in; what the points of an uncertain map have in common is considered

@@ -7,6 +7,7 @@
 #include "app/posed_images.h"
 #include "core/errors.h"
 #include "tracking/camera_tracker.h"
+#include "tracking/without_rolling_shutter.h"
 
 namespace alidade {
 namespace {
@@ -29,10 +30,10 @@ std::vector<PointObservation> by_descriptor(const PointMap& map, const ImageFram
       map, match_points(map, all, detect_sift(frame.grey, options.sift), options.relocalisation_ratio), 1.0);
 }
 
-CameraState moving_as(const PosedImage& image) {
-  CameraState state = resting_state(image.frame.time, image.T_world_camera, Matrix6d::Identity(), 0.0, 0.0);
+MotionState moving_as(const PosedImage& image) {
+  MotionState state = resting_state(image.frame.time, image.T_world_camera, Matrix6d::Identity(), 0.0, 0.0);
   state.v_world = image.T_world_camera.linear() * image.twist.head<3>();
-  state.omega_camera = image.twist.tail<3>();
+  state.omega_body = image.twist.tail<3>();
   return state;
 }
 

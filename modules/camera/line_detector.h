@@ -91,8 +91,10 @@ std::optional<LineProjection> project(const LineModel& model, const Eigen::Vecto
 /// The same for a point of the world.
 std::optional<LineProjection> project(const LineDetector& detector, const Eigen::Vector3d& p_world);
 
-/// The plane, in the world, in which a marker must lie that is read at `value`: about `near_world` to first order, and
-/// exact where the model's planes are. Empty where the model does not see that point.
+/// The plane, in the world, in which a marker must lie that is read at `value`: the tangent, near `near_world`, of the
+/// surface on which all points are read so; exact where the model's planes are. It passes through the detector's
+/// centre. A value so far from what the point should give that the surface is not reached from there gives the plane of
+/// the reading's first order about the point. Empty where the model does not see that point.
 std::optional<Plane> plane_near(const LineDetector& detector, double value, const Eigen::Vector3d& near_world);
 
 /// The same without a notion of where the marker is: the plane of the model's axis (elevation 0 of a laser sweep, the
@@ -100,7 +102,14 @@ std::optional<Plane> plane_near(const LineDetector& detector, double value, cons
 /// no point is read at `value`.
 std::optional<Plane> plane_of(const LineDetector& detector, double value);
 
-/// Whether two readings of the detector differ by whole turns alone: an angle's residual is taken in (-π, π].
+/// The reading of a plane of the world, the inverse of plane_of: that of the axis point that lies in the plane, whether
+/// or not the plane passes through the detector's centre. Empty where no axis point in view does.
+std::optional<double> value_of(const LineDetector& detector, const Plane& plane_world);
+
+/// Whether the model reads pixels; else angles, rad.
+bool reads_pixels(const LineModel& model);
+
+/// value - expected, in the model's unit; angles that differ by whole turns are the same: theirs is in [-π, π].
 double residual(const LineModel& model, double value, double expected);
 
 /// Where all planes of the detector meet (focal line's point, rotor, lens), in the world: ranges count from here.

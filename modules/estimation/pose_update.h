@@ -27,10 +27,10 @@ struct PoseUpdateOptions {
   double variance_factor = 1.0;  ///< on the observations' sigma_px²
 };
 
-/// What the sightings alone say of the pose, to second order: log p(z | T_world_camera * perturbation(ξ)) =
+/// What the sightings alone say of the pose, to second order: log p(z | T_world_body * perturbation(ξ)) =
 /// gradientᵀ ξ - ½ ξᵀ information ξ + constant, in m and rad.
 struct PoseLikelihood {
-  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d T_world_body = Eigen::Isometry3d::Identity();
   Matrix6d information = Matrix6d::Zero();
   Vector6d gradient = Vector6d::Zero();
 };

@@ -79,16 +79,6 @@ NamedCamera checked(const std::filesystem::path& path, const CameraRecord& recor
   return {record.name, camera};
 }
 
-// A string in YAML's double quotes.
-std::string quoted(const std::string& name) {
-  std::string text = "\"";
-  for (const char c : name) {
-    if (c == '"' || c == '\\') text += '\\';
-    text += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-  }
-  return text + '"';
-}
-
 }  // namespace
 
 void set_intrinsics(const std::filesystem::path& path, int line, std::span<const double> K, Camera& camera) {
@@ -141,17 +131,31 @@ Camera read_camera(const std::filesystem::path& path, std::optional<ImageSize> s
   return cameras.front().camera;
 }
 
-void write_camera(const std::filesystem::path& path, const Camera& c, const std::string& name) {
-  const BrownConrady& k = c.distortion;
-  std::string text = "# pixel (0, 0) is the centre of the top-left pixel; distortion in OpenCV's order and signs\n";
-  text += fmt::format("camera:\n  name: {}\n  model: {}\n  resolution_px: [{}, {}]\n", quoted(name),
-                      k == BrownConrady{} ? "pinhole" : "brown_conrady", c.width, c.height);
-  text += fmt::format("  intrinsics_px: {{fx: {}, fy: {}, cx: {}, cy: {}}}\n", c.fx, c.fy, c.cx, c.cy);
-  if (k != BrownConrady{}) {
-    text += fmt::format("  distortion: {{k1: {}, k2: {}, p1: {}, p2: {}, k3: {}}}\n", k.k1, k.k2, k.p1, k.p2, k.k3);
+std::string quoted_yaml(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
   }
-  if (c.readout_s != 0) text += fmt::format("  readout_s: {}\n", c.readout_s);
-  write_file(path, text);
+  return quoted + '"';
+}
+
+std::string format_camera(const Camera& c, const std::string& indent) {
+  const BrownConrady& k = c.distortion;
+  std::string text = fmt::format("{}model: {}\n{}resolution_px: [{}, {}]\n", indent,
+                                 k == BrownConrady{} ? "pinhole" : "brown_conrady", indent, c.width, c.height);
+  text += fmt::format("{}intrinsics_px: {{fx: {}, fy: {}, cx: {}, cy: {}}}\n", indent, c.fx, c.fy, c.cx, c.cy);
+  if (k != BrownConrady{}) {
+    text +=
+        fmt::format("{}distortion: {{k1: {}, k2: {}, p1: {}, p2: {}, k3: {}}}\n", indent, k.k1, k.k2, k.p1, k.p2, k.k3);
+  }
+  if (c.readout_s != 0) text += fmt::format("{}readout_s: {}\n", indent, c.readout_s);
+  return text;
+}
+
+void write_camera(const std::filesystem::path& path, const Camera& camera, const std::string& name) {
+  std::string text = "# pixel (0, 0) is the centre of the top-left pixel; distortion in OpenCV's order and signs\n";
+  write_file(path, text + fmt::format("camera:\n  name: {}\n", quoted_yaml(name)) + format_camera(camera, "  "));
 }
 
 }  // namespace alidade

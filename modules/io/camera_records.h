@@ -51,4 +51,10 @@ int parse_size(const std::filesystem::path& path, int line, std::string_view wor
 /// Distortion of OpenCV's order k1 k2 p1 p2 [k3 ...]. Throws InputError where coefficients beyond k3 are not 0.
 BrownConrady distortion_from(const std::filesystem::path& path, int line, std::span<const double> coefficients);
 
+/// A text in YAML's double quotes.
+std::string quoted_yaml(const std::string& text);
+
+/// The lines of our YAML that say a camera's model and numbers, each after `indent`.
+std::string format_camera(const Camera& camera, const std::string& indent);
+
 }  // namespace alidade

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <array>
 #include <charconv>
 
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
 #include "core/errors.h"
-#include "io/atomic_file.h"
 #include "io/text_rows.h"
 #include "io/trajectory_file.h"
+#include "io/trajectory_writer.h"
 
 namespace alidade {
 namespace {
@@ -17,18 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kColumns = 22;  // t_ns and the upper triangle of a 6x6 matrix
-constexpr std::array<const char*, 6> kAxes{"x", "y", "z", "rx", "ry", "rz"};
-
-std::string column_names() {
-  std::string names = "t_ns";
-  for (int i = 0; i < 6; ++i) {
-    for (int j = i; j < 6; ++j) {
-      const char* unit = j < 3 ? "m2" : i < 3 ? "m_rad" : "rad2";
-      names += fmt::format(",{}_{}_{}", kAxes[i], kAxes[j], unit);
-    }
-  }
-  return names;
-}
 
 Timestamp parse_time(const fs::path& path, const TextRow& row) {
   const std::string& text = row.fields[0];
@@ -63,19 +50,9 @@ fs::path covariance_path(const fs::path& trajectory_path) {
 }
 
 void write_covariances(const fs::path& path, const Trajectory& trajectory) {
-  std::string text =
-      "# covariance of xi = (translation, rotation vector) on the right of T_world_camera, in camera axes;"
-      " upper triangle; m^2, m rad, rad^2\n" +
-      column_names() + "\n";
-  for (const StampedPose& pose : trajectory) {
-    if (!pose.covariance) continue;
-    text += fmt::format("{}", pose.time.time_since_epoch().count());
-    for (int i = 0; i < 6; ++i) {
-      for (int j = i; j < 6; ++j) text += fmt::format(",{}", (*pose.covariance)(i, j));
-    }
-    text += '\n';
-  }
-  write_file(path, text);
+  CovarianceWriter writer(path);
+  for (const StampedPose& pose : trajectory) writer.write(pose);
+  writer.commit();
 }
 
 Trajectory read_covariances(const fs::path& path, Trajectory trajectory) {

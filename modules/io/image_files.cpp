@@ -60,6 +60,12 @@ cv::Mat read_depth(const std::filesystem::path& path) {
   return depth;
 }
 
+cv::Mat read_line_image(const std::filesystem::path& path) {
+  const cv::Mat image = decode(path, cv::IMREAD_ANYCOLOR | cv::IMREAD_ANYDEPTH);
+  if (image.depth() == CV_8U || image.depth() == CV_16U) return image;
+  throw InputError(path, 0, "has neither 8 nor 16 bits per channel", "convert the image to 16 bits");
+}
+
 void write_image(const std::filesystem::path& path, const cv::Mat& image) {
   const std::string extension = lower_extension(path);
   if (extension != ".png" && extension != ".jpg" && extension != ".jpeg") {

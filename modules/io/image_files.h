@@ -15,6 +15,10 @@ cv::Mat read_image(const std::filesystem::path& path);
 /// A depth image: 16 bits, one channel, in the data's own unit, 0 where nothing was measured. Throws as read_image.
 cv::Mat read_depth(const std::filesystem::path& path);
 
+/// A line image, whose rows are successive exposures of a linear detector: 8 or 16 bits, one or three channels. Throws
+/// as read_image.
+cv::Mat read_line_image(const std::filesystem::path& path);
+
 /// Writes PNG or JPEG as the name ends; the file appears whole or not at all. Throws DeviceError where the file system
 /// refuses, std::invalid_argument for another ending or an empty image.
 void write_image(const std::filesystem::path& path, const cv::Mat& image);

@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 
 #include "core/errors.h"
-#include "io/atomic_file.h"
 #include "io/pose_files.h"
 #include "io/text_rows.h"
+#include "io/trajectory_writer.h"
 
 namespace alidade {
 namespace {
@@ -190,15 +190,9 @@ TrajectoryFile read_trajectory(const fs::path& path) {
 }
 
 void write_trajectory_tum(const fs::path& path, const Trajectory& trajectory) {
-  std::string text = "# timestamp[s] tx ty tz[m] qx qy qz qw: camera to world\n";
-  for (const StampedPose& pose : trajectory) {
-    const Eigen::Vector3d t = pose.T_world_camera.translation();
-    Eigen::Quaterniond q(pose.T_world_camera.linear());
-    if (q.w() < 0) q.coeffs() *= -1;
-    text += fmt::format("{} {} {} {} {} {} {} {}\n", format_seconds(pose.time), t.x(), t.y(), t.z(), q.x(), q.y(),
-                        q.z(), q.w());
-  }
-  write_file(path, text);
+  TumWriter writer(path);
+  for (const StampedPose& pose : trajectory) writer.write(pose);
+  writer.commit();
 }
 
 }  // namespace alidade

@@ -31,8 +31,7 @@ struct TrajectoryFile {
 /// row before, or not in order of time. A time may be repeated once: loggers round.
 TrajectoryFile read_trajectory(const std::filesystem::path& path);
 
-/// Writes `timestamp tx ty tz qx qy qz qw` under a header line: times exact in ns, numbers with as many digits as give
-/// back the same double. Throws DeviceError.
+/// Writes a whole trajectory through TumWriter (io/trajectory_writer.h). Throws DeviceError.
 void write_trajectory_tum(const std::filesystem::path& path, const Trajectory& trajectory);
 
 /// Where the covariances of a trajectory file stand: `covariance.csv` beside `trajectory.tum`, else

@@ -55,16 +55,16 @@ std::optional<MeasuredPose> measure(const Camera& camera, const PosePrior& prior
 
 }  // namespace
 
-std::optional<FilterStep> filter_step(const Camera& camera, const CameraState& state, const SightingNoise& noise,
+std::optional<FilterStep> filter_step(const Camera& camera, const MotionState& state, const SightingNoise& noise,
                                       Timestamp time, std::span<const PointObservation> observations,
                                       const CameraFilterOptions& options) {
   // The gate must let through what any mode of the motion allows.
-  const CameraState widest = predict_without_noise(state, time);
+  const MotionState widest = predict_without_noise(state, time);
   Matrix6d P = covariance_in_map(widest);
   for (const MotionMode& mode : options.motion) {
     P += noise_covariance(state, widest, mode.noise).topLeftCorner<6, 6>();
   }
-  auto measured = measure(camera, {widest.T_world_camera, P.inverse()}, noise, observations, options);
+  auto measured = measure(camera, {widest.T_world_body, P.inverse()}, noise, observations, options);
   if (!measured) return std::nullopt;
   MotionStep motion = absorb(state, time, options.motion, measured->update.sightings);
   return FilterStep{std::move(motion), std::move(measured->update), measured->noise};

@@ -7,10 +7,10 @@
 
 #include "camera/camera.h"
 #include "camera/measurement.h"
+#include "estimation/motion_noise.h"
+#include "estimation/motion_state.h"
+#include "estimation/motion_step.h"
 #include "estimation/pose_update.h"
-#include "tracking/camera_state.h"
-#include "tracking/motion_noise.h"
-#include "tracking/motion_step.h"
 
 namespace alidade {
 
@@ -36,7 +36,7 @@ struct CameraFilterOptions {
 /// Predicts the state to `time` and takes in the frame's observations; the noise of the sightings is learned from their
 /// residuals. Empty where the observations give no pose.
 /// Source: camera-tracker paper eqs. 1–13 in error-state information form.
-std::optional<FilterStep> filter_step(const Camera& camera, const CameraState& state, const SightingNoise& noise,
+std::optional<FilterStep> filter_step(const Camera& camera, const MotionState& state, const SightingNoise& noise,
                                       Timestamp time, std::span<const PointObservation> observations,
                                       const CameraFilterOptions& options);
 

@@ -68,7 +68,7 @@ FrameReport CameraTracker::wait(const ImageFrame& frame, const FlowImage& flow) 
   adopt(std::move(*started), frame);
   report.reason.clear();
   report.state = FrameState::Tracked;
-  report.T_world_camera = motion_.state().T_world_camera;
+  report.T_world_camera = motion_.state().T_world_body;
   report.covariance = motion_.state().covariance.topLeftCorner<6, 6>();
   report.is_keyframe = true;
   return report;
@@ -100,7 +100,7 @@ void CameraTracker::adopt(StartedMap started, const ImageFrame& frame) {
 
 FrameReport CameraTracker::track(const ImageFrame& frame, const FlowImage& flow) {
   // 1. Predict (eqs. 1-7).
-  const CameraState predicted = has_pose_ ? motion_.predicted(frame.time) : motion_.state();
+  const MotionState predicted = has_pose_ ? motion_.predicted(frame.time) : motion_.state();
   // 2. Find the map's points: by flow from the previous frame, else by SIFT near where they are expected, else
   // anywhere.
   const Localiser localiser = this->localiser();
@@ -112,7 +112,7 @@ FrameReport CameraTracker::track(const ImageFrame& frame, const FlowImage& flow)
     }
   } else {
     if (has_pose_ && missed_ == 0) {
-      attempt = localiser.follow({previous_, motion_.state().T_world_camera, tracks_}, predicted, flow);
+      attempt = localiser.follow({previous_, motion_.state().T_world_body, tracks_}, predicted, flow);
     }
     if (!localiser.is_believable(attempt) && has_pose_) attempt = localiser.search(predicted, frame.grey);
     if (!localiser.is_believable(attempt)) {
@@ -139,7 +139,7 @@ double CameraTracker::median_range(const Eigen::Isometry3d& T_world_camera,
   return median(std::move(ranges));
 }
 
-FrameReport CameraTracker::accept(const ImageFrame& frame, const CameraState& predicted, Localisation attempt) {
+FrameReport CameraTracker::accept(const ImageFrame& frame, const MotionState& predicted, Localisation attempt) {
   const bool continues = has_pose_ && attempt.used_prior;
   FrameReport report;
   const bool anchor = keyframe_is_due(attempt);
@@ -168,8 +168,8 @@ FrameReport CameraTracker::accept(const ImageFrame& frame, const CameraState& pr
   report.time = frame.time;
   report.name = frame.name;
   report.state = FrameState::Tracked;
-  const CameraState& now = options_.pose == PoseMethod::Ekf ? motion_.estimate() : motion_.state();
-  report.T_world_camera = now.T_world_camera;
+  const MotionState& now = options_.pose == PoseMethod::Ekf ? motion_.estimate() : motion_.state();
+  report.T_world_camera = now.T_world_body;
   report.covariance = now.covariance.topLeftCorner<6, 6>();
   report.likelihood = update.sightings;
   report.chi2_per_dof = update.chi2_per_dof;
@@ -195,9 +195,9 @@ void CameraTracker::move_on(const ImageFrame& frame, const Localisation& attempt
   }
 }
 
-std::vector<FrameExpectation> CameraTracker::expectations(const CameraState& predicted,
+std::vector<FrameExpectation> CameraTracker::expectations(const MotionState& predicted,
                                                           const std::vector<FoundPoint>& found) const {
-  const PoseBelief belief{predicted.T_world_camera, predicted.covariance.topLeftCorner<6, 6>()};
+  const PoseBelief belief{predicted.T_world_body, predicted.covariance.topLeftCorner<6, 6>()};
   std::vector<FrameExpectation> result;
   for (const FoundPoint& f : found) {
     const auto expected = expect(camera_, belief, live_.map.points[static_cast<std::size_t>(f.point)], sigma_px_);
@@ -206,7 +206,7 @@ std::vector<FrameExpectation> CameraTracker::expectations(const CameraState& pre
   return result;
 }
 
-FrameReport CameraTracker::lose(const ImageFrame& frame, const CameraState& predicted) {
+FrameReport CameraTracker::lose(const ImageFrame& frame, const MotionState& predicted) {
   ++missed_;
   tracks_.clear();
   if (missed_ > options_.most_predicted) has_pose_ = false;
@@ -218,7 +218,7 @@ FrameReport CameraTracker::lose(const ImageFrame& frame, const CameraState& pred
   report.reason = "too few map points found again (blur, darkness, or a part of the scene that the map lacks)";
   if (has_pose_) {
     motion_.pass(frame.time);
-    report.T_world_camera = predicted.T_world_camera;
+    report.T_world_camera = predicted.T_world_body;
     report.covariance = predicted.covariance.topLeftCorner<6, 6>();
   }
   return report;
@@ -271,17 +271,17 @@ void CameraTracker::retrack_from_last_keyframe() {
 }
 
 // The inliers are the localiser's; pose and covariance become those of the filter that has points in its state.
-PoseUpdate CameraTracker::estimate_with_map(Timestamp time, const CameraState& predicted, const Localisation& attempt) {
+PoseUpdate CameraTracker::estimate_with_map(Timestamp time, const MotionState& predicted, const Localisation& attempt) {
   PoseUpdate update = *attempt.update;
   if (slam_) {
     const SlamFrame frame{time, motion_.noise(), inliers_of(attempt.found, update), sigma_px_};
     slam_ = follow(camera_, *slam_, live_.map, living_, frame, options_.slam_points);
   }
-  if (!slam_ || !slam_->state.camera.T_world_camera.matrix().allFinite()) {  // this frame starts it
+  if (!slam_ || !slam_->state.camera.T_world_body.matrix().allFinite()) {  // this frame starts it
     slam_ = SlamTrack{slam_state(absorb(predicted, update.T_world_camera, update.covariance)), {}};
     slam_->state.camera.time = time;
   }
-  update.T_world_camera = slam_->state.camera.T_world_camera;
+  update.T_world_camera = slam_->state.camera.T_world_body;
   update.covariance = slam_->state.covariance.topLeftCorner<6, 6>();
   return update;
 }

@@ -44,15 +44,15 @@ class CameraTracker {
   Localiser localiser() const;
   double median_range(const Eigen::Isometry3d& T_world_camera, const std::vector<FoundPoint>& found) const;
 
-  FrameReport accept(const ImageFrame& frame, const CameraState& predicted, Localisation attempt);
+  FrameReport accept(const ImageFrame& frame, const MotionState& predicted, Localisation attempt);
   void move_on(const ImageFrame& frame, const Localisation& attempt);
-  std::vector<FrameExpectation> expectations(const CameraState& predicted, const std::vector<FoundPoint>& found) const;
-  FrameReport lose(const ImageFrame& frame, const CameraState& predicted);
+  std::vector<FrameExpectation> expectations(const MotionState& predicted, const std::vector<FoundPoint>& found) const;
+  FrameReport lose(const ImageFrame& frame, const MotionState& predicted);
   bool keyframe_is_due(const Localisation& attempt) const;
   void add_keyframe(const ImageFrame& frame, Localisation& attempt);
   void retrack_from_last_keyframe();
   void learn_sighting_noise(const PoseUpdate& update);
-  PoseUpdate estimate_with_map(Timestamp time, const CameraState& predicted, const Localisation& attempt);
+  PoseUpdate estimate_with_map(Timestamp time, const MotionState& predicted, const Localisation& attempt);
 
   Camera camera_;
   CameraTrackerOptions options_;

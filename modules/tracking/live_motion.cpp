@@ -24,20 +24,20 @@ bool is_finite(const RecordingNoise& noise) {
 }  // namespace
 
 void LiveMotion::start(const StampedPose& first, const StampedPose& second, double frame_s) {
-  const CameraState moving = moving_state(first, second);
+  const MotionState moving = moving_state(first, second);
   const double pair_s = std::max(1e-6, to_seconds(second.time - first.time));
-  const double v = moving.v_world.norm(), omega = std::max(moving.omega_camera.norm(), 0.1 / pair_s);
+  const double v = moving.v_world.norm(), omega = std::max(moving.omega_body.norm(), 0.1 / pair_s);
   state_ = resting_state(second.time, second.T_world_camera, moving.covariance.topLeftCorner<6, 6>(), v, omega);
   state_.v_world = moving.v_world;
-  state_.omega_camera = moving.omega_camera;
+  state_.omega_body = moving.omega_body;
   // One frame's change of pace is not known yet; the pair's is an upper bound, so that adapt() corrects it.
-  noise_.acceleration = isotropic_noise(v / pair_s, std::max(moving.omega_camera.norm(), 0.05 / pair_s) / pair_s);
+  noise_.acceleration = isotropic_noise(v / pair_s, std::max(moving.omega_body.norm(), 0.05 / pair_s) / pair_s);
   learned_ = {guessed_motion(v, omega, frame_s)};
   restart(moving);
 }
 
 void LiveMotion::follow(Timestamp time, const PoseUpdate& pose) {
-  const CameraState next = absorb(predicted(time), pose.T_world_camera, pose.covariance);
+  const MotionState next = absorb(predicted(time), pose.T_world_camera, pose.covariance);
   noise_ = adapt(noise_, state_, next, 0.1);
   state_ = next;
   if (learned_.pose.isZero(0.0)) learned_.pose = guessed_pose_noise(pose.sightings);
@@ -47,7 +47,7 @@ void LiveMotion::follow(Timestamp time, const PoseUpdate& pose) {
 }
 
 void LiveMotion::jump(Timestamp time, const PoseUpdate& pose, double depth_m, double frame_s) {
-  const CameraState next = absorb(predicted(time), pose.T_world_camera, pose.covariance);
+  const MotionState next = absorb(predicted(time), pose.T_world_camera, pose.covariance);
   const MotionNoise open = adapt(noise_, state_, next, 0.5);
   find_anew(time, pose, depth_m, frame_s);
   state_ = next;
@@ -59,7 +59,7 @@ void LiveMotion::find_anew(Timestamp time, const PoseUpdate& pose, double depth_
   state_ = resting_state(time, pose.T_world_camera, pose.covariance, v, kHandTurn);
   noise_.acceleration = isotropic_noise(2.0 * depth_m, 10.0);
   if (learned_.motion.empty()) learned_.motion = guessed_motion(v, kHandTurn, frame_s);
-  CameraState estimate = resting_state(time, pose.T_world_camera, pose.covariance + learned_.pose, v, kHandTurn);
+  MotionState estimate = resting_state(time, pose.T_world_camera, pose.covariance + learned_.pose, v, kHandTurn);
   estimate.covariance.block<6, 6>(12, 12) = noise_.acceleration;
   restart(std::move(estimate));
 }
@@ -71,10 +71,10 @@ void LiveMotion::pass(Timestamp time) {
 }
 
 void LiveMotion::correct(const Eigen::Isometry3d& T_world_camera) {
-  state_.T_world_camera = estimate_.T_world_camera = T_world_camera;
+  state_.T_world_body = estimate_.T_world_body = T_world_camera;
 }
 
-void LiveMotion::restart(CameraState estimate) {
+void LiveMotion::restart(MotionState estimate) {
   first_ = estimate_ = std::move(estimate);
   recent_.clear();
 }

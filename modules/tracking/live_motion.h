@@ -13,14 +13,14 @@ namespace alidade {
 class LiveMotion {
  public:
   /// At the last frame: constant velocity, its noise adapted to the last steps.
-  const CameraState& state() const { return state_; }
+  const MotionState& state() const { return state_; }
   const MotionNoise& noise() const { return noise_; }
 
   /// At the last frame, by motion_step.h; its noise learned from the last seconds.
-  const CameraState& estimate() const { return estimate_; }
+  const MotionState& estimate() const { return estimate_; }
 
   /// The state expected at `time`.
-  CameraState predicted(Timestamp time) const { return predict(state_, time, noise_); }
+  MotionState predicted(Timestamp time) const { return predict(state_, time, noise_); }
 
   /// At the second of two poses that may be many frames apart; `frame_s`: seconds from frame to frame.
   void start(const StampedPose& first, const StampedPose& second, double frame_s);
@@ -41,14 +41,14 @@ class LiveMotion {
   void correct(const Eigen::Isometry3d& T_world_camera);
 
  private:
-  void restart(CameraState estimate);
+  void restart(MotionState estimate);
   void learn();
 
-  CameraState state_;
+  MotionState state_;
   MotionNoise noise_;
-  CameraState estimate_;
+  MotionState estimate_;
   RecordingNoise learned_;
-  CameraState first_;                    // the estimate before recent_
+  MotionState first_;                    // the estimate before recent_
   std::vector<FrameLikelihood> recent_;  // to learn from
 };
 

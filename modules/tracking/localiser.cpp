@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "reconstruction/resection.h"
+#include "tracking/without_rolling_shutter.h"
 
 namespace alidade {
 namespace {
@@ -39,12 +40,12 @@ Localiser::Localiser(const Camera& camera, const PointMap& map, const std::vecto
       sigma_px_(sigma_px),
       map_is_known_(map_is_known) {}
 
-Localisation Localiser::follow(const FollowedPoints& last, const CameraState& predicted, const FlowImage& flow) const {
+Localisation Localiser::follow(const FollowedPoints& last, const MotionState& predicted, const FlowImage& flow) const {
   std::vector<Eigen::Vector2d> from, guesses;
   for (const FoundPoint& track : last.points) {
     const Eigen::Vector3d& p = map_.points[static_cast<std::size_t>(track.point)].p_world;
     const auto before = project(camera_, last.T_world_camera.inverse() * p);
-    const auto after = project(camera_, predicted.T_world_camera.inverse() * p);
+    const auto after = project(camera_, predicted.T_world_body.inverse() * p);
     from.push_back(track.pixel);
     // The difference of two projections leaves out what the map and the last pose are off by.
     guesses.push_back(before && after ? track.pixel + after->pixel - before->pixel : track.pixel);
@@ -61,21 +62,21 @@ Localisation Localiser::follow(const FollowedPoints& last, const CameraState& pr
   return attempt;
 }
 
-Localisation Localiser::search(const CameraState& predicted, const cv::Mat& grey) const {
+Localisation Localiser::search(const MotionState& predicted, const cv::Mat& grey) const {
   Localisation attempt;
   attempt.features = detect_sift(grey, options_.sift);
   SearchOptions near;
   near.sigma_px = sigma_px_;
   const std::vector<bool> none_taken(static_cast<std::size_t>(attempt.features->size()), false);
   attempt.found =
-      search_points(camera_, map_, points_, {predicted.T_world_camera, predicted.covariance.topLeftCorner<6, 6>()},
+      search_points(camera_, map_, points_, {predicted.T_world_body, predicted.covariance.topLeftCorner<6, 6>()},
                     *attempt.features, none_taken, near);
   attempt.update = estimate(predicted, attempt.found, true);
   if (!is_believable(attempt)) return attempt;
   return widen(predicted, std::move(attempt));
 }
 
-Localisation Localiser::relocalise(const CameraState& predicted, const cv::Mat& grey,
+Localisation Localiser::relocalise(const MotionState& predicted, const cv::Mat& grey,
                                    std::optional<Features> features) const {
   Localisation attempt;
   attempt.used_prior = false;
@@ -92,14 +93,14 @@ Localisation Localiser::relocalise(const CameraState& predicted, const cv::Mat& 
   }
   if (!pose) return attempt;
   for (int i : pose->inliers) attempt.found.push_back(matches[static_cast<std::size_t>(i)]);
-  CameraState start = predicted;
-  start.T_world_camera = pose->T_world_camera;
+  MotionState start = predicted;
+  start.T_world_body = pose->T_world_camera;
   attempt.update = estimate(start, attempt.found, false);
   if (!attempt.update) return attempt;
   return widen(start, std::move(attempt));
 }
 
-Localisation Localiser::match_every_descriptor(const CameraState& predicted, const cv::Mat& grey,
+Localisation Localiser::match_every_descriptor(const MotionState& predicted, const cv::Mat& grey,
                                                bool use_prior) const {
   Localisation attempt;
   attempt.features = detect_sift(grey, options_.sift);
@@ -108,7 +109,7 @@ Localisation Localiser::match_every_descriptor(const CameraState& predicted, con
   return attempt;
 }
 
-Localisation Localiser::anchor_in_features(const CameraState& predicted, const cv::Mat& grey,
+Localisation Localiser::anchor_in_features(const MotionState& predicted, const cv::Mat& grey,
                                            Localisation attempt) const {
   if (!attempt.features) attempt.features = detect_sift(grey, options_.sift);
   std::vector<FoundPoint> found =
@@ -127,8 +128,8 @@ Localisation Localiser::anchor_in_features(const CameraState& predicted, const c
   const auto more = search_points(camera_, map_, others, loosely(*attempt.update), *attempt.features, taken, near);
   found.insert(found.end(), more.begin(), more.end());
 
-  CameraState start = predicted;
-  if (!attempt.used_prior) start.T_world_camera = attempt.update->T_world_camera;
+  MotionState start = predicted;
+  if (!attempt.used_prior) start.T_world_body = attempt.update->T_world_camera;
   const auto update = estimate(start, found, attempt.used_prior);
   if (!update || update->inlier_count < options_.least_inliers) return attempt;
   if (map_is_known_ && update->inlier_count < attempt.update->inlier_count / 3) return attempt;  // a blurred image
@@ -148,12 +149,12 @@ bool Localiser::is_weak(const Localisation& attempt) const {
   return attempt.update->inlier_count < options_.weak_share * known;
 }
 
-std::optional<PoseUpdate> Localiser::estimate(const CameraState& predicted, const std::vector<FoundPoint>& found,
+std::optional<PoseUpdate> Localiser::estimate(const MotionState& predicted, const std::vector<FoundPoint>& found,
                                               bool use_prior) const {
   const auto observations = as_observations(map_, found, sigma_px_);
   PoseUpdateOptions update = options_.update;
   if (options_.pose == PoseMethod::EkfPaper) update.map_uncertainty = MapUncertainty::Ignored;
-  const auto estimate_with = [&](const CameraState& moving) {
+  const auto estimate_with = [&](const MotionState& moving) {
     return estimate_pose(options_.pose, camera_, predicted, without_rolling_shutter(camera_, moving, observations),
                          update, use_prior);
   };
@@ -164,7 +165,7 @@ std::optional<PoseUpdate> Localiser::estimate(const CameraState& predicted, cons
 }
 
 // With the pose nearly known, the other points of the map are looked for close to where they must be.
-Localisation Localiser::widen(const CameraState& predicted, Localisation first) const {
+Localisation Localiser::widen(const MotionState& predicted, Localisation first) const {
   Localisation wide = std::move(first);
   SearchOptions near;
   near.sigma_px = 1.5 * sigma_px_;
@@ -172,8 +173,8 @@ Localisation Localiser::widen(const CameraState& predicted, Localisation first) 
   const std::vector<bool> none_taken(static_cast<std::size_t>(wide.features->size()), false);
   auto found = search_points(camera_, map_, points_, loosely(*wide.update), *wide.features, none_taken, near);
   if (found.size() < wide.found.size()) return wide;
-  CameraState start = predicted;
-  if (!wide.used_prior) start.T_world_camera = wide.update->T_world_camera;
+  MotionState start = predicted;
+  if (!wide.used_prior) start.T_world_body = wide.update->T_world_camera;
   const auto update = estimate(start, found, wide.used_prior);
   if (!update || update->inlier_count < wide.update->inlier_count) return wide;
   wide.found = std::move(found);

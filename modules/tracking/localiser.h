@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "tracking/camera_state.h"
+#include "estimation/motion_state.h"
 #include "tracking/camera_tracker_options.h"
 #include "tracking/map_search.h"
 
@@ -37,21 +37,21 @@ class Localiser {
             const CameraTrackerOptions& options, double sigma_px, bool map_is_known);
 
   /// By optical flow from the image before. Without an update where flow has lost its hold.
-  Localisation follow(const FollowedPoints& last, const CameraState& predicted, const FlowImage& flow) const;
+  Localisation follow(const FollowedPoints& last, const MotionState& predicted, const FlowImage& flow) const;
 
   /// By SIFT, each point inside its innovation ellipse about where it is expected.
-  Localisation search(const CameraState& predicted, const cv::Mat& grey) const;
+  Localisation search(const MotionState& predicted, const cv::Mat& grey) const;
 
   /// By descriptors alone and PnP in RANSAC: no prediction is needed. `features`: the image's, where they are known.
-  Localisation relocalise(const CameraState& predicted, const cv::Mat& grey, std::optional<Features> features) const;
+  Localisation relocalise(const MotionState& predicted, const cv::Mat& grey, std::optional<Features> features) const;
 
   /// By descriptors in all of the map, the prediction deciding what fits (where there is one): slow, to compare with.
-  Localisation match_every_descriptor(const CameraState& predicted, const cv::Mat& grey, bool use_prior) const;
+  Localisation match_every_descriptor(const MotionState& predicted, const cv::Mat& grey, bool use_prior) const;
 
   /// Followed points take the place of the feature near by, and the rest of the map is looked for close to where it
   /// must be: what flow has drifted is taken back, what it has lost returns. `attempt` itself where that brings no
   /// pose.
-  Localisation anchor_in_features(const CameraState& predicted, const cv::Mat& grey, Localisation attempt) const;
+  Localisation anchor_in_features(const MotionState& predicted, const cv::Mat& grey, Localisation attempt) const;
 
   /// Whether there is a pose, by enough points and by most of those found.
   bool is_believable(const Localisation& attempt) const;
@@ -60,9 +60,9 @@ class Localiser {
   bool is_weak(const Localisation& attempt) const;
 
  private:
-  std::optional<PoseUpdate> estimate(const CameraState& predicted, const std::vector<FoundPoint>& found,
+  std::optional<PoseUpdate> estimate(const MotionState& predicted, const std::vector<FoundPoint>& found,
                                      bool use_prior) const;
-  Localisation widen(const CameraState& predicted, Localisation first) const;
+  Localisation widen(const MotionState& predicted, Localisation first) const;
   std::vector<FoundPoint> snapped_to_features(const std::vector<FoundPoint>& found, const Features& features,
                                               bool drop_others) const;
   std::vector<int> recent_points() const;

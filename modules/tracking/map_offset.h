@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "camera/measurement.h"
-#include "tracking/camera_state.h"
+#include "estimation/motion_state.h"
 
 namespace alidade {
 

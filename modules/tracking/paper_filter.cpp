@@ -13,8 +13,8 @@ using Jacobian13x12 = Eigen::Matrix<double, 13, 12>;
 
 // q is world → camera and is multiplied on the right by the turn, so the camera turns by -ω about world axes:
 // ω_paper = -R_world_camera ω_camera.
-Jacobian13x12 jacobian_of_paper_state(const CameraState& state) {
-  const Eigen::Matrix3d R = state.T_world_camera.linear();
+Jacobian13x12 jacobian_of_paper_state(const MotionState& state) {
+  const Eigen::Matrix3d R = state.T_world_body.linear();
   const Eigen::Quaterniond q(R.transpose());
   Jacobian13x12 J = Jacobian13x12::Zero();
   J.block<3, 3>(0, 0) = R;
@@ -22,7 +22,7 @@ Jacobian13x12 jacobian_of_paper_state(const CameraState& state) {
   J.block<1, 3>(3, 3) = 0.5 * q.vec().transpose();
   J.block<3, 3>(4, 3) = -0.5 * (q.w() * Eigen::Matrix3d::Identity() - skew(q.vec()));
   J.block<3, 3>(7, 6) = Eigen::Matrix3d::Identity();
-  J.block<3, 3>(10, 3) = R * skew(state.omega_camera);
+  J.block<3, 3>(10, 3) = R * skew(state.omega_body);
   J.block<3, 3>(10, 9) = -R;
   return J;
 }
@@ -43,24 +43,24 @@ Eigen::Matrix<double, 3, 4> jacobian_of_rotated(const Eigen::Quaterniond& q, con
 
 }  // namespace
 
-PaperState to_paper_state(const CameraState& state) {
-  const Eigen::Matrix3d R = state.T_world_camera.linear();
+PaperState to_paper_state(const MotionState& state) {
+  const Eigen::Matrix3d R = state.T_world_body.linear();
   const Eigen::Quaterniond q(R.transpose());
   PaperState paper;
-  paper.s << state.T_world_camera.translation(), q.w(), q.x(), q.y(), q.z(), state.v_world, -R * state.omega_camera;
+  paper.s << state.T_world_body.translation(), q.w(), q.x(), q.y(), q.z(), state.v_world, -R * state.omega_body;
   const Jacobian13x12 J = jacobian_of_paper_state(state);
   paper.P = J * state.covariance.topLeftCorner<12, 12>() * J.transpose();
   return paper;
 }
 
-CameraState from_paper_state(const PaperState& paper, Timestamp time) {
-  CameraState state;
+MotionState from_paper_state(const PaperState& paper, Timestamp time) {
+  MotionState state;
   state.time = time;
   const Eigen::Matrix3d R = quaternion_of(paper.s).normalized().toRotationMatrix().transpose();
-  state.T_world_camera.linear() = R;
-  state.T_world_camera.translation() = paper.s.head<3>();
+  state.T_world_body.linear() = R;
+  state.T_world_body.translation() = paper.s.head<3>();
   state.v_world = paper.s.segment<3>(7);
-  state.omega_camera = -R.transpose() * paper.s.tail<3>();
+  state.omega_body = -R.transpose() * paper.s.tail<3>();
   // The 13×12 Jacobian has full column rank: its pseudo-inverse drops the length of q and inverts the rest.
   const Jacobian13x12 J = jacobian_of_paper_state(state);
   const Eigen::Matrix<double, 12, 13> J_inverse = (J.transpose() * J).ldlt().solve(J.transpose());
@@ -81,7 +81,7 @@ Eigen::Matrix<double, 2, 13> paper_measurement_jacobian(const Camera& camera, co
   return H;
 }
 
-CameraState update_paper_filter(const Camera& camera, const CameraState& predicted,
+MotionState update_paper_filter(const Camera& camera, const MotionState& predicted,
                                 std::span<const PointObservation> observations) {
   PaperState paper = to_paper_state(predicted);
   const Eigen::Matrix3d R_camera_world = quaternion_of(paper.s).toRotationMatrix();

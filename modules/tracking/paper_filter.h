@@ -5,7 +5,7 @@
 
 #include "camera/camera.h"
 #include "camera/measurement.h"
-#include "tracking/camera_state.h"
+#include "estimation/motion_state.h"
 
 namespace alidade {
 
@@ -20,8 +20,8 @@ struct PaperState {
 };
 
 /// The same belief in the paper's coordinates, and back. Covariances are carried over to first order.
-PaperState to_paper_state(const CameraState& state);
-CameraState from_paper_state(const PaperState& paper, Timestamp time);
+PaperState to_paper_state(const MotionState& state);
+MotionState from_paper_state(const PaperState& paper, Timestamp time);
 
 /// The paper's measurement Jacobian of one point, ∂(pixel)/∂s, 2×13; zero where the point is not visible.
 Eigen::Matrix<double, 2, 13> paper_measurement_jacobian(const Camera& camera, const Vector13d& s,
@@ -30,7 +30,7 @@ Eigen::Matrix<double, 2, 13> paper_measurement_jacobian(const Camera& camera, co
 /// One additive Kalman update with R = σ²I, then q/|q|. The gain is taken as P (I + HᵀR⁻¹H P)⁻¹ HᵀR⁻¹, equal to
 /// eq. 12's P Hᵀ(H P Hᵀ + R)⁻¹ by the push-through identity, and 13×13 instead of 2n×2n.
 /// Source: camera-tracker paper eqs. 8–13.
-CameraState update_paper_filter(const Camera& camera, const CameraState& predicted,
+MotionState update_paper_filter(const Camera& camera, const MotionState& predicted,
                                 std::span<const PointObservation> observations);
 
 }  // namespace alidade

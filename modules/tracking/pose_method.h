@@ -5,8 +5,8 @@
 #include <span>
 
 #include "camera/camera.h"
+#include "estimation/motion_state.h"
 #include "estimation/pose_update.h"
-#include "tracking/camera_state.h"
 
 namespace alidade {
 
@@ -24,7 +24,7 @@ enum class PoseMethod {
 /// Pose, covariance and inliers of a frame. The inliers are chosen alike for every method: by the gate about the
 /// prediction and the robust update. `use_prior` false leaves the prediction out of the estimate itself (a fresh start,
 /// a relocalisation). Empty where the observations do not determine a pose.
-std::optional<PoseUpdate> estimate_pose(PoseMethod method, const Camera& camera, const CameraState& predicted,
+std::optional<PoseUpdate> estimate_pose(PoseMethod method, const Camera& camera, const MotionState& predicted,
                                         std::span<const PointObservation> observations,
                                         const PoseUpdateOptions& options, bool use_prior);
 

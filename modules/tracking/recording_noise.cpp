@@ -5,8 +5,8 @@
 
 #include <Eigen/LU>
 
-#include "tracking/motion_learning.h"
-#include "tracking/state_smoother.h"
+#include "estimation/motion_learning.h"
+#include "estimation/state_smoother.h"
 
 namespace alidade {
 namespace {
@@ -22,7 +22,7 @@ Matrix6d learned_pose_noise(const Matrix6d& R, std::span<const FrameLikelihood> 
   int count = 0;
   for (std::size_t k = 0; k < frames.size(); ++k) {
     if (!is_seen(frames[k])) continue;
-    const PoseLikelihood z = about(states[k].state.T_world_camera, frames[k].sightings);
+    const PoseLikelihood z = about(states[k].state.T_world_body, frames[k].sightings);
     const Eigen::PartialPivLU<Matrix6d> blur(Matrix6d::Identity() + z.information * R);
     // E and covariance of the common error o: y = Λ⁻¹g is measured of o + noise, about a state of covariance P.
     const Matrix6d weight = R * blur.solve(z.information);
@@ -50,18 +50,18 @@ PoseLikelihood blurred(const PoseLikelihood& sightings, const Matrix6d& covarian
   return result;
 }
 
-std::vector<MotionStep> filter_recording(const CameraState& first, std::span<const FrameLikelihood> frames,
+std::vector<MotionStep> filter_recording(const MotionState& first, std::span<const FrameLikelihood> frames,
                                          const RecordingNoise& noise) {
   std::vector<MotionStep> steps;
   for (const FrameLikelihood& frame : frames) {
-    const CameraState& state = steps.empty() ? first : steps.back().state;
+    const MotionState& state = steps.empty() ? first : steps.back().state;
     steps.push_back(is_seen(frame) ? absorb(state, frame.time, noise.motion, blurred(frame.sightings, noise.pose))
                                    : pass(state, frame.time, noise.motion));
   }
   return steps;
 }
 
-RecordingNoise learned(RecordingNoise noise, const CameraState& first, std::span<const FrameLikelihood> frames,
+RecordingNoise learned(RecordingNoise noise, const MotionState& first, std::span<const FrameLikelihood> frames,
                        int steps) {
   constexpr std::size_t kFewest = 10;
   if (frames.size() < kFewest) return noise;

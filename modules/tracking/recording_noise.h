@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "tracking/motion_step.h"
+#include "estimation/motion_step.h"
 
 namespace alidade {
 
@@ -29,13 +29,13 @@ Matrix6d guessed_pose_noise(const PoseLikelihood& sightings);
 PoseLikelihood blurred(const PoseLikelihood& sightings, const Matrix6d& covariance);
 
 /// The steps from `first` through the frames of a recording, one per frame.
-std::vector<MotionStep> filter_recording(const CameraState& first, std::span<const FrameLikelihood> frames,
+std::vector<MotionStep> filter_recording(const MotionState& first, std::span<const FrameLikelihood> frames,
                                          const RecordingNoise& noise);
 
 /// The noise under which a recording is more probable: `steps` of expectation and maximisation, from `noise` on. No
 /// truth is needed. As it is where there are fewer than ten frames.
 /// Source: Shumway and Stoffer 1982.
-RecordingNoise learned(RecordingNoise noise, const CameraState& first, std::span<const FrameLikelihood> frames,
+RecordingNoise learned(RecordingNoise noise, const MotionState& first, std::span<const FrameLikelihood> frames,
                        int steps);
 
 }  // namespace alidade

@@ -43,16 +43,16 @@ void move_by(SlamState& state, const Eigen::VectorXd& error) {
 
 }  // namespace
 
-SlamState slam_state(const CameraState& camera) {
+SlamState slam_state(const MotionState& camera) {
   SlamState state{camera, {}, camera.covariance.topLeftCorner<kCamera, kCamera>()};
   state.camera.a_world.setZero();
-  state.camera.alpha_camera.setZero();
+  state.camera.alpha_body.setZero();
   state.camera.covariance.setZero();
   return state;
 }
 
-CameraState camera_of(const SlamState& state) {
-  CameraState camera = state.camera;
+MotionState camera_of(const SlamState& state) {
+  MotionState camera = state.camera;
   camera.covariance.topLeftCorner<kCamera, kCamera>() = state.covariance.topLeftCorner<kCamera, kCamera>();
   return camera;
 }
@@ -100,7 +100,7 @@ SlamState predict(const SlamState& state, Timestamp time, const MotionNoise& noi
 }
 
 std::optional<SlamMeasurement> expected_measurement(const Camera& camera, const SlamState& state, int point) {
-  const Eigen::Isometry3d T_camera_world = state.camera.T_world_camera.inverse();
+  const Eigen::Isometry3d T_camera_world = state.camera.T_world_body.inverse();
   const Eigen::Vector3d p_camera = T_camera_world * state.points.at(static_cast<std::size_t>(point));
   const auto projection = project(camera, p_camera);
   if (!projection) return std::nullopt;

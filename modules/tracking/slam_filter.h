@@ -8,24 +8,24 @@
 #include <Eigen/Core>
 
 #include "camera/camera.h"
-#include "tracking/camera_state.h"
+#include "estimation/motion_state.h"
 
 namespace alidade {
 
 /// A camera and the map that it moves in, in one state: what the camera tracker leaves out of its own, to compare with.
 struct SlamState {
-  CameraState camera;                   ///< without accelerations; its covariance is not kept here
+  MotionState camera;                   ///< without accelerations; its covariance is not kept here
   std::vector<Eigen::Vector3d> points;  ///< p_world, m
-  /// Of the error (xi of the pose, v_world, omega_camera: 12, where the paper counts 13; then every p_world: 3M); m,
+  /// Of the error (xi of the pose, v_world, omega_body: 12, where the paper counts 13; then every p_world: 3M); m,
   /// rad, s.
   Eigen::MatrixXd covariance;
 };
 
 /// A camera alone. Its accelerations are taken as zero.
-SlamState slam_state(const CameraState& camera);
+SlamState slam_state(const MotionState& camera);
 
 /// The camera with its own covariance.
-CameraState camera_of(const SlamState& state);
+MotionState camera_of(const SlamState& state);
 
 /// A point that is to enter the state.
 struct SlamPoint {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <span>
 
+#include "estimation/state_smoother.h"
 #include "tracking/recording_noise.h"
-#include "tracking/state_smoother.h"
 
 namespace alidade {
 namespace {
@@ -36,7 +36,7 @@ std::vector<Reports> segments(std::vector<FrameReport>& reports, double longest_
 
 // A segment as the filter takes it: the state at its first frame, before its sightings are seen.
 struct Recording {
-  CameraState first;
+  MotionState first;
   std::vector<FrameLikelihood> frames;
   double v = 0.0, omega = 0.0;  // median pace, m/s and rad/s
   double dt = 0.0;              // median
@@ -77,10 +77,10 @@ void smooth(Reports segment, const TrackSmoothingOptions& options) {
   RecordingNoise noise{guessed_motion(recording.v, recording.omega, recording.dt)};
   noise = learned(std::move(noise), recording.first, recording.frames, kLearningSteps);
   const std::vector<MotionStep> steps = filter_recording(recording.first, recording.frames, noise);
-  const std::vector<CameraState> states = smoothed_states(steps, options.lag);
+  const std::vector<MotionState> states = smoothed_states(steps, options.lag);
   for (std::size_t i = 0; i < segment.size(); ++i) {
     if (segment[i].is_keyframe) continue;
-    segment[i].T_world_camera = states[i].T_world_camera;
+    segment[i].T_world_camera = states[i].T_world_body;
     segment[i].covariance = states[i].covariance.topLeftCorner<6, 6>();
   }
 }

@@ -43,7 +43,7 @@ std::optional<PixelSpread> pixel_spread(const Camera& camera, const SigmaPoses& 
 
 }  // namespace
 
-PoseLikelihood unscented_likelihood(const Camera& camera, const CameraState& predicted,
+PoseLikelihood unscented_likelihood(const Camera& camera, const MotionState& predicted,
                                     std::span<const PointObservation> observations, const UnscentedOptions& options) {
   if (!(options.alpha > 0 && options.alpha * options.alpha <= options.beta)) {
     throw std::invalid_argument(fmt::format("alpha must be in (0, sqrt(beta)], got {}", options.alpha));
@@ -54,9 +54,9 @@ PoseLikelihood unscented_likelihood(const Camera& camera, const CameraState& pre
   const double shift_weight = options.beta - options.alpha * options.alpha;
   Eigen::Matrix<double, kSize, kPairs> xi;
   xi << spread * Matrix6d(P.llt().matrixL()), -spread * Matrix6d(P.llt().matrixL());
-  SigmaPoses poses{predicted.T_world_camera.inverse(), {}};
+  SigmaPoses poses{predicted.T_world_body.inverse(), {}};
   for (const auto& x : xi.colwise()) {
-    poses.T_sigma_world.push_back((predicted.T_world_camera * perturbation(x)).inverse());
+    poses.T_sigma_world.push_back((predicted.T_world_body * perturbation(x)).inverse());
   }
   // Sums about the mean's own pixel, so that no weight is negative: with D the pixels' differences from it, w their
   // weight and s = w Σ D the mean's shift, P_zz = w D Dᵀ + (beta - alpha²) s sᵀ + R = Z Zᵀ + R. With P = X Xᵀ and
@@ -79,14 +79,14 @@ PoseLikelihood unscented_likelihood(const Camera& camera, const CameraState& pre
   const auto factor = M.ldlt();
   const Matrix6d information = Matrix6d(X * factor.solve(X.transpose())).ldlt().solve(Matrix6d::Identity());
   PoseLikelihood likelihood;
-  likelihood.T_world_camera = predicted.T_world_camera;
+  likelihood.T_world_body = predicted.T_world_body;
   likelihood.gradient = information * (X * factor.solve(innovation));
   likelihood.information = information - P.ldlt().solve(Matrix6d::Identity());
   likelihood.information = 0.5 * (likelihood.information + likelihood.information.transpose()).eval();
   return likelihood;
 }
 
-CameraState update_unscented_filter(const Camera& camera, const CameraState& predicted,
+MotionState update_unscented_filter(const Camera& camera, const MotionState& predicted,
                                     std::span<const PointObservation> observations, const UnscentedOptions& options) {
   return absorb(predicted, unscented_likelihood(camera, predicted, observations, options));
 }

@@ -5,7 +5,7 @@
 
 #include "camera/camera.h"
 #include "camera/measurement.h"
-#include "tracking/camera_state.h"
+#include "estimation/motion_state.h"
 
 namespace alidade {
 
@@ -21,12 +21,12 @@ struct UnscentedOptions {
 /// Pixels depend on the pose alone: of all sigma points of the state (in the tangent space, by the Cholesky factor with
 /// the pose first) these are the 13 that show different ones, spread as for six dimensions.
 /// Source: Julier and Uhlmann 1997; Wan and van der Merwe 2000.
-PoseLikelihood unscented_likelihood(const Camera& camera, const CameraState& predicted,
+PoseLikelihood unscented_likelihood(const Camera& camera, const MotionState& predicted,
                                     std::span<const PointObservation> observations,
                                     const UnscentedOptions& options = {});
 
 /// One unscented Kalman update with R = σ²I; the velocities follow the pose as they are correlated with it.
-CameraState update_unscented_filter(const Camera& camera, const CameraState& predicted,
+MotionState update_unscented_filter(const Camera& camera, const MotionState& predicted,
                                     std::span<const PointObservation> observations,
                                     const UnscentedOptions& options = {});
 

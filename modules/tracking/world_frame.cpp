@@ -104,7 +104,7 @@ std::vector<FrameReport> transform(const Similarity& similarity, std::vector<Fra
   for (FrameReport& report : reports) {
     report.T_world_camera = moved(similarity, report.T_world_camera);
     report.covariance = scaled(report.covariance, similarity.scale);
-    report.likelihood.T_world_camera = moved(similarity, report.likelihood.T_world_camera);
+    report.likelihood.T_world_body = moved(similarity, report.likelihood.T_world_body);
     report.likelihood.information = scaled(report.likelihood.information, 1.0 / similarity.scale);
     report.likelihood.gradient.head<3>() /= similarity.scale;
   }

@@ -64,6 +64,7 @@ std::vector<Eigen::Vector3d> places_of(const Scene& scene) {
   }
   for (const auto& path : scene.paths) places.insert(places.end(), path.points_world.begin(), path.points_world.end());
   for (const auto& s : scene.surfaces) places.insert(places.end(), s.vertices_world.begin(), s.vertices_world.end());
+  for (const auto& s : scene.translucent) places.insert(places.end(), s.vertices_world.begin(), s.vertices_world.end());
   std::erase_if(places, [](const Eigen::Vector3d& p) { return !p.allFinite(); });
   return places;
 }

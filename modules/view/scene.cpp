@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
+
+#include <Eigen/Eigenvalues>
 
 namespace alidade {
 namespace {
@@ -117,6 +120,31 @@ std::vector<CameraPyramid> scene_pyramids(const Trajectory& trajectory, PyramidS
     pyramids.push_back(pyramid);
   }
   return pyramids;
+}
+
+TranslucentSurface covariance_ellipsoid(const Eigen::Vector3d& mean_world, const Eigen::Matrix3d& covariance_world,
+                                        double sigmas, const Rgb& colour) {
+  constexpr int kRound = 16, kUp = 8;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance_world);
+  const Eigen::Matrix3d axes =
+      eigen.eigenvectors() * (sigmas * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt()).asDiagonal();
+  TranslucentSurface surface;
+  surface.colour = colour;
+  surface.opacity = 0.3;
+  for (int up = 0; up <= kUp; ++up) {
+    const double elevation = std::numbers::pi * (static_cast<double>(up) / kUp - 0.5);
+    for (int round = 0; round < kRound; ++round) {
+      const double azimuth = 2.0 * std::numbers::pi * round / kRound;
+      const Eigen::Vector3d d(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+                              std::sin(elevation));
+      surface.vertices_world.emplace_back(mean_world + axes * d);
+      if (up == 0) continue;
+      const int here = up * kRound + round, next = up * kRound + (round + 1) % kRound;
+      surface.triangles.emplace_back(here - kRound, next - kRound, next);
+      surface.triangles.emplace_back(here - kRound, next, here);
+    }
+  }
+  return surface;
 }
 
 Scene track_scene(const TrackPicture& picture) {

@@ -47,6 +47,14 @@ struct TexturedSurface {
   cv::Mat texture;  ///< CV_8UC3, BGR
 };
 
+/// Triangles of one colour, through which what lies behind can be seen. Not lit.
+struct TranslucentSurface {
+  std::vector<Eigen::Vector3d> vertices_world;
+  std::vector<Eigen::Vector3i> triangles;
+  Rgb colour = palette::kReference;
+  double opacity = 0.15;
+};
+
 /// A text at a point, drawn over everything.
 struct SceneLabel {
   Eigen::Vector3d p_world = Eigen::Vector3d::Zero();
@@ -66,12 +74,14 @@ struct Scene {
   std::vector<CameraPyramid> cameras;
   std::vector<ScenePath> paths;
   std::vector<TexturedSurface> surfaces;
+  std::vector<TranslucentSurface> translucent;
   std::vector<SceneLabel> labels;
   std::vector<LegendEntry> legend;
   std::string title;
   Rgb background{250, 250, 252};
   double point_size_px = 2.5;
   double pyramid_depth_m = 0.1;
+  Eigen::Vector3d up_world = Eigen::Vector3d::Zero();  ///< what to show upwards; zero: what the cameras take for up
 };
 
 /// The five corners of a camera's pyramid in the world: apex, then the base clockwise from the top left as the camera
@@ -89,6 +99,11 @@ ScenePath scene_path(const Trajectory& trajectory, const Rgb& colour,
 /// given, gives the shape of the base.
 std::vector<CameraPyramid> scene_pyramids(const Trajectory& trajectory, PyramidStyle style, const Rgb& colour,
                                           const std::optional<Camera>& camera = std::nullopt, std::size_t most = 40);
+
+/// The surface on which a normally distributed point is `sigmas` standard deviations from its mean; flat or drawn out
+/// to a line where the covariance (m²) is singular.
+TranslucentSurface covariance_ellipsoid(const Eigen::Vector3d& mean_world, const Eigen::Matrix3d& covariance_world,
+                                        double sigmas, const Rgb& colour);
 
 /// What the picture of a camera track shows. All in one frame: align the truth first.
 struct TrackPicture {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
+#include <string>
 
 #include <opencv2/imgproc.hpp>
 #include <vtkActor.h>
@@ -91,6 +92,24 @@ void add_path(vtkRenderer& stage, const ScenePath& path, const Eigen::Vector3d& 
   stage.AddActor(actor);
 }
 
+void check_triangles(const char* what, const std::vector<Eigen::Vector3i>& triangles, std::size_t vertices) {
+  for (const auto& triangle : triangles) {
+    if (triangle.minCoeff() < 0 || static_cast<std::size_t>(triangle.maxCoeff()) >= vertices) {
+      throw std::invalid_argument(std::string(what) + ": a triangle names a vertex that is not there");
+    }
+  }
+}
+
+void add_translucent(vtkRenderer& stage, const TranslucentSurface& surface, const Eigen::Vector3d& origin) {
+  ColouredMesh mesh(origin);
+  for (const auto& vertex : surface.vertices_world) mesh.add_point(vertex);
+  for (const auto& t : surface.triangles) mesh.add_cell({t[0], t[1], t[2]}, surface.colour);
+  const auto actor = mesh.make_actor(&vtkPolyData::SetPolys);
+  actor->GetProperty()->SetOpacity(surface.opacity);
+  actor->ForceTranslucentOn();
+  stage.AddActor(actor);
+}
+
 // Sides of different brightness, as if light came from above and a little from the left of each camera.
 void add_sides(ColouredMesh& mesh, const std::vector<Eigen::Vector3d>& corners, const Rgb& colour) {
   constexpr std::array<double, 4> kSideShades{1.0, 0.82, 0.68, 0.9};  // top, right, bottom, left
@@ -137,11 +156,7 @@ void check(const TexturedSurface& surface) {
   if (surface.texture_uv.size() != count) {
     throw std::invalid_argument("TexturedSurface: one texture_uv per vertex needed");
   }
-  for (const auto& triangle : surface.triangles) {
-    if (triangle.minCoeff() < 0 || static_cast<std::size_t>(triangle.maxCoeff()) >= count) {
-      throw std::invalid_argument("TexturedSurface: a triangle names a vertex that is not there");
-    }
-  }
+  check_triangles("TexturedSurface", surface.triangles, count);
 }
 
 vtkSmartPointer<vtkTexture> make_texture(const cv::Mat& bgr) {
@@ -190,11 +205,15 @@ void add_surface(vtkRenderer& stage, const TexturedSurface& surface, const Eigen
 
 void fill_stage(vtkRenderer& stage, const Scene& scene, const Eigen::Vector3d& origin, double enlargement) {
   for (const auto& surface : scene.surfaces) check(surface);
+  for (const auto& surface : scene.translucent) {
+    check_triangles("TranslucentSurface", surface.triangles, surface.vertices_world.size());
+  }
   stage.RemoveAllViewProps();
   for (const auto& surface : scene.surfaces) add_surface(stage, surface, origin);
   add_points(stage, scene, origin, enlargement);
   for (const auto& path : scene.paths) add_path(stage, path, origin, enlargement);
   add_pyramids(stage, scene, origin, enlargement);
+  for (const auto& surface : scene.translucent) add_translucent(stage, surface, origin);
 }
 
 }  // namespace alidade

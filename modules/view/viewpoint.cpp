@@ -33,7 +33,8 @@ SceneAxes axes_of(const Scene& scene) {
     ahead += camera.T_world_camera.linear().col(2);
   }
   const double count = static_cast<double>(std::max<std::size_t>(1, scene.cameras.size()));
-  if (up.norm() < 0.1 * count) up = -Eigen::Vector3d::UnitY();
+  if (!scene.up_world.isZero()) up = scene.up_world;
+  if (up.norm() < 0.1 * count && scene.up_world.isZero()) up = -Eigen::Vector3d::UnitY();
   up.normalize();
   ahead -= up * up.dot(ahead);
   if (ahead.norm() < 0.1 * count) {  // cameras that look all round: take the first one's word
@@ -55,6 +56,7 @@ std::vector<Eigen::Vector3d> firm_points(const Scene& scene) {
   }
   for (const auto& path : scene.paths) std::ranges::for_each(path.points_world, add);
   for (const auto& surface : scene.surfaces) std::ranges::for_each(surface.vertices_world, add);
+  for (const auto& surface : scene.translucent) std::ranges::for_each(surface.vertices_world, add);
   return points;
 }
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The topics of scripts/figures, each a list of sections in the order in which they are measured."""
 
-from figure_topics import camera_tracker, main_job
+from figure_topics import camera_tracker, main_job, marker1d
 
-TOPICS = {"main-job": main_job.SECTIONS, "camera-tracker": camera_tracker.SECTIONS}
+TOPICS = {"main-job": main_job.SECTIONS, "camera-tracker": camera_tracker.SECTIONS, "marker1d": marker1d.SECTIONS}

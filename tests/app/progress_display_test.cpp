@@ -90,5 +90,15 @@ TEST(ProgressDisplay, QuietPrintsWarningsOnly) {
   EXPECT_EQ(terminal.err.str(), "warning: a warning\n");
 }
 
+TEST(ProgressDisplay, ALiveFeedIsOnStandardOutputInEveryStyle) {
+  for (const auto style : {DisplayStyle::Bar, DisplayStyle::Lines, DisplayStyle::Json, DisplayStyle::Quiet}) {
+    Terminal terminal;
+    ProgressDisplay display(style, terminal.out, terminal.err);
+    display.stream({{"event", "pose"}, {"t_ns", 4}});
+    EXPECT_EQ(terminal.out.str(), "{\"event\":\"pose\",\"t_ns\":4}\n");
+    EXPECT_EQ(terminal.err.str(), "");
+  }
+}
+
 }  // namespace
 }  // namespace alidade

@@ -46,8 +46,8 @@ void step_filter(benchmark::State& run) {
   CameraFilterOptions options;
   const Vector6d pace = difference(r.truth[0], r.truth[1]) / kFrameS;
   options.motion = guessed_motion(pace.head<3>().norm(), pace.tail<3>().norm(), kFrameS);
-  const CameraState first = moving_state({time_of(0), r.truth[0], {}}, {time_of(1), r.truth[1], {}});
-  CameraState state = first;
+  const MotionState first = moving_state({time_of(0), r.truth[0], {}}, {time_of(1), r.truth[1], {}});
+  MotionState state = first;
   SightingNoise noise;
   std::size_t frame = 2;
   for (auto _ : run) {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""alidade simulate camera and alidade view: what they write, draw and refuse."""
+"""alidade simulate camera, simulate body and view: what they write, draw and refuse."""
 
 import csv
 import os
@@ -64,6 +64,54 @@ class SimulateCamera(ProgramTest):
         self.assertTrue(summary["interrupted"])
         self.assertGreater(summary["frames"], 0)
         self.assertEqual(len(list((self.directory / "scene" / "images").iterdir())), summary["frames"])
+
+
+class SimulateBody(ProgramTest):
+    def test_writes_readings_with_their_truth(self):
+        self.assert_succeeds("simulate", "body", "--frames", 50, "--markers", 3, "--wrong-ids", 0.2, "-o", "body")
+        body = self.directory / "body"
+        with open(body / "observations.csv", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), 50 * 12 * 3)
+        self.assertEqual({int(row["t_ns"]) for row in rows}, {4_000_000 * i for i in range(50)})
+        self.assertLess(max(abs(float(row["value_rad"])) for row in rows), 0.5)
+        with open(body / "body.csv", encoding="utf-8") as file:
+            self.assertEqual([row["marker"] for row in csv.DictReader(file)], ["0", "1", "2"])
+        truth = [line for line in (body / "truth.tum").read_text().splitlines() if not line.startswith("#")]
+        self.assertEqual(len(truth), 50)
+        for name in ("detectors.yaml", "options.yaml", "report.html"):
+            self.assertTrue((body / name).is_file(), name)
+        summary = self.summary("body")
+        self.assertEqual((summary["frames"], summary["readings"]), (50, len(rows)))
+        self.assertAlmostEqual(summary["readings_with_wrong_id"] / len(rows), 0.2, delta=0.05)
+
+    def test_the_same_seed_gives_the_same_readings(self):
+        for name, seed in (("a", 5), ("b", 5), ("c", 6)):
+            self.assert_succeeds("simulate", "body", "--frames", 3, "--seed", seed, "-o", name)
+        readings = [(self.directory / name / "observations.csv").read_bytes() for name in "abc"]
+        self.assertEqual(readings[0], readings[1])
+        self.assertNotEqual(readings[0], readings[2])
+
+    def test_several_bodies_have_their_own_truth(self):
+        self.assert_succeeds("simulate", "body", "--frames", 3, "--bodies", 2, "-o", "two")
+        self.assertEqual(self.summary("two")["truth"], ["truth_body1.tum", "truth_body2.tum"])
+        self.assertTrue((self.directory / "two" / "truth_body2.tum").is_file())
+
+    def test_refuses_what_cannot_be(self):
+        words = ["simulate", "body", "-o", "x", "--quiet"]
+        self.assert_refuses([*words, "--markers", "5"], r"markers must be 3, 4 or 8, got 5")
+        self.assert_refuses([*words, "--wrong-ids", "1.5"], r"wrong_ids must be 0\.\.1, got 1\.5")
+        self.assertFalse((self.directory / "x").exists())
+
+    def test_keeps_what_is_there_when_interrupted(self):
+        code, printed = self.interrupt(["simulate", "body", "--frames", 5_000_000, "-o", "body"],
+                                       once_seen="reading markers")
+        self.assertEqual(code, 130, printed)
+        summary = self.summary("body")
+        self.assertTrue(summary["interrupted"])
+        rows = (self.directory / "body" / "observations.csv").read_text().count("\n") - 1
+        self.assertEqual(rows, summary["readings"])
+        self.assertEqual(rows, 48 * summary["frames"])
 
 
 class View(ProgramTest):

@@ -175,8 +175,8 @@ TEST_F(SightingsLikelihood, HasTheGradientOfItsLogarithm) {
   Vector6d gradient;
   for (int i = 0; i < 6; ++i) {
     const Vector6d step = 1e-6 * Vector6d::Unit(i);
-    gradient(i) = (log_density(sightings.T_world_camera * perturbation(step)) -
-                   log_density(sightings.T_world_camera * perturbation(-step))) /
+    gradient(i) = (log_density(sightings.T_world_body * perturbation(step)) -
+                   log_density(sightings.T_world_body * perturbation(-step))) /
                   2e-6;
   }
   EXPECT_GT(std::sqrt(gradient.dot(update_.covariance * gradient)), 0.5);
@@ -186,10 +186,10 @@ TEST_F(SightingsLikelihood, HasTheGradientOfItsLogarithm) {
 TEST_F(SightingsLikelihood, GivesTheResultTogetherWithThePrior) {
   const PoseLikelihood& sightings = update_.sightings;
   const Matrix6d information = sightings.information + prior_.information;
-  const Vector6d to_prior = difference(sightings.T_world_camera, prior_.T_world_camera);
+  const Vector6d to_prior = difference(sightings.T_world_body, prior_.T_world_camera);
   const Vector6d pull = information.ldlt().solve(prior_.information * to_prior);
   const Vector6d xi = information.ldlt().solve(sightings.gradient) + pull;
-  const Vector6d off = difference(sightings.T_world_camera, update_.T_world_camera) - xi;
+  const Vector6d off = difference(sightings.T_world_body, update_.T_world_camera) - xi;
   EXPECT_GT(std::sqrt(pull.dot(information * pull)), 0.5);
   EXPECT_LT(std::sqrt(off.dot(information * off)), 1e-2);
   const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6d> ratios(update_.covariance, information.inverse());

@@ -26,7 +26,7 @@ class FilterStepTest : public testing::Test {
 
   test::RandomGeometry random_{kSeed};
   test::SimulatedCamera simulated_ = test::simulated_camera(random_);
-  CameraState before_ = test::belief_before_points(0.1);
+  MotionState before_ = test::belief_before_points(0.1);
 };
 
 // 2 · 60 - 6 residuals count: a pose is six numbers.
@@ -40,8 +40,8 @@ TEST(FilterStepConsistency, HoldsAfterTwentyFrames) {
     test::RandomGeometry random(kSeed + trial);
     test::SimulatedCamera simulated = test::simulated_camera(random);
     simulated.noise = {isotropic_noise(0.5, 0.2), isotropic_noise(2.0, 1.0)};
-    const CameraState belief = test::belief_before_points(0.5);
-    const CameraState truth = moved_by(belief, test::drawn(random, belief.covariance));
+    const MotionState belief = test::belief_before_points(0.5);
+    const MotionState truth = moved_by(belief, test::drawn(random, belief.covariance));
     const auto frames = simulated.recording(truth, 20, random);
     const auto steps = test::filtered(simulated, belief, frames, test::options_as_simulated(simulated.noise));
     ASSERT_EQ(steps.size(), frames.size()) << "seed " << kSeed + trial;
@@ -63,7 +63,7 @@ class JumpInVelocity : public FilterStepTest {
     truth_.v_world += jump_;
   }
 
-  FilterStep step_to(const CameraState& truth) {
+  FilterStep step_to(const MotionState& truth) {
     simulated_.noise = {};
     const test::SimulatedFrame frame = simulated_.frame(simulated_.next(truth, random_), random_);
     return filter_step(simulated_.camera, before_, {}, next_time(), frame.observations, options_).value();
@@ -71,15 +71,15 @@ class JumpInVelocity : public FilterStepTest {
 
   const Eigen::Vector3d jump_{0.0, -0.6, 0.0};
   CameraFilterOptions options_;
-  CameraState truth_;
+  MotionState truth_;
 };
 
 TEST_F(JumpInVelocity, IsFollowedInTheFrameWhereItBegins) {
   const FilterStep step = step_to(truth_);
   EXPECT_LT(step.motion.mode_weight.front(), 1e-3);
   EXPECT_NEAR((step.motion.state.v_world - before_.v_world).dot(jump_) / jump_.squaredNorm(), 1.0, 0.15);
-  const CameraState now = test::driven(truth_, simulated_.dt, Vector6d::Zero(), Vector6d::Zero());
-  const Vector6d off = difference(step.motion.state.T_world_camera, now.T_world_camera);
+  const MotionState now = test::driven(truth_, simulated_.dt, Vector6d::Zero(), Vector6d::Zero());
+  const Vector6d off = difference(step.motion.state.T_world_body, now.T_world_body);
   EXPECT_LT(off.dot(step.motion.state.covariance.topLeftCorner<6, 6>().ldlt().solve(off)), 22.5) << "6 dof, 99.9 %";
 }
 
@@ -96,8 +96,8 @@ TEST_F(JumpInVelocity, IsFollowedHoweverSureTheSightingsAre) {
 TEST_F(JumpInVelocity, IsMissedByNoiseOfOneStrength) {
   options_.motion = {{options_.motion.front().noise, 1.0}};
   const FilterStep step = step_to(truth_);
-  const CameraState now = test::driven(truth_, simulated_.dt, Vector6d::Zero(), Vector6d::Zero());
-  const Vector6d off = difference(step.motion.state.T_world_camera, now.T_world_camera);
+  const MotionState now = test::driven(truth_, simulated_.dt, Vector6d::Zero(), Vector6d::Zero());
+  const Vector6d off = difference(step.motion.state.T_world_body, now.T_world_body);
   EXPECT_GT(off.dot(step.motion.state.covariance.topLeftCorner<6, 6>().ldlt().solve(off)), 22.5) << "6 dof, 99.9 %";
 }
 
@@ -114,7 +114,7 @@ TEST_F(JumpInVelocity, IsWeighedByTheInnovationLikelihood) {
   double prior_sum = 0.0;
   for (const MotionMode& mode : options_.motion) {
     const double prior = density.empty() ? mode.weight : kCaution * mode.weight;
-    const CameraState predicted = predict(before_, next_time(), mode.noise);
+    const MotionState predicted = predict(before_, next_time(), mode.noise);
     density.push_back(prior * std::exp(log_evidence(predicted, step.update.sightings)));
     prior_sum += prior;
   }
@@ -126,10 +126,10 @@ TEST_F(JumpInVelocity, IsWeighedByTheInnovationLikelihood) {
   // In doubt, so that every part counts.
   EXPECT_LT(step.motion.mode_weight.front(), 0.95);
   EXPECT_GT(step.motion.mode_weight.front(), 0.05);
-  const CameraState predicted = predict(before_, next_time(), mean_noise(options_.motion, step.motion.mode_weight));
+  const MotionState predicted = predict(before_, next_time(), mean_noise(options_.motion, step.motion.mode_weight));
   EXPECT_LT((step.motion.predicted.covariance - predicted.covariance).norm(), 1e-12);
   EXPECT_LT(error_between(step.motion.predicted, predicted).norm(), 1e-12);
-  const CameraState absorbed = absorb(predicted, step.update.sightings);
+  const MotionState absorbed = absorb(predicted, step.update.sightings);
   EXPECT_LT(error_between(step.motion.state, absorbed).norm(), 1e-9);
 }
 
@@ -141,7 +141,7 @@ TEST_F(FilterStepTest, LearnsTheSightingsNoiseFromAnyGuess) {
     for (const double guess : {1.0 / 9, 1.0, 1e4}) {
       SCOPED_TRACE(testing::Message() << noise_px << " px, guess " << guess << " of its square, seed " << kSeed);
       simulated_.noise_px = noise_px;
-      CameraState state = before_;
+      MotionState state = before_;
       SightingNoise noise{guess * noise_px * noise_px, 0.0};
       const auto frames = simulated_.recording(before_, 40, random_);
       for (std::size_t k = 0; k < frames.size(); ++k) {
@@ -177,12 +177,12 @@ TEST_F(FilterStepTest, LeavesTheSightingsNoiseWhereItIsTold) {
 TEST_F(FilterStepTest, GivesTheExactPoseOnExactSightings) {
   const CameraFilterOptions options = calm();
   simulated_.noise_px = 0.0;
-  const CameraState truth = moved_by(before_, test::drawn(random_, before_.covariance));
+  const MotionState truth = moved_by(before_, test::drawn(random_, before_.covariance));
   const auto frame = simulated_.frame(simulated_.next(truth, random_), random_);
-  EXPECT_GT(difference(before_.T_world_camera, truth.T_world_camera).norm(), 0.01);
+  EXPECT_GT(difference(before_.T_world_body, truth.T_world_body).norm(), 0.01);
   const auto step = filter_step(simulated_.camera, before_, {}, next_time(), frame.observations, options);
   ASSERT_TRUE(step);
-  EXPECT_LT(difference(frame.truth.T_world_camera, step->motion.state.T_world_camera).norm(), 1e-9);
+  EXPECT_LT(difference(frame.truth.T_world_body, step->motion.state.T_world_body).norm(), 1e-9);
 }
 
 TEST_F(FilterStepTest, IsEmptyWithTooFewSightings) {

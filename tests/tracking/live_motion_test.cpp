@@ -13,7 +13,7 @@ constexpr double kDepth_m = 2.0, kFrame_s = 1.0 / 30;
 
 PoseUpdate update_of(const FrameLikelihood& frame) {
   PoseUpdate update;
-  update.T_world_camera = frame.sightings.T_world_camera;
+  update.T_world_camera = frame.sightings.T_world_body;
   update.covariance = frame.sightings.information.inverse();
   update.sightings = frame.sightings;
   return update;
@@ -29,8 +29,8 @@ class LiveMotionTest : public testing::Test {
     while (last_ < frame) {
       ++last_;
       motion_.follow(simulated_.frames[last_].time, update_of(simulated_.frames[last_]));
-      found_.push_back(motion_.state().T_world_camera);
-      estimated_.push_back(motion_.estimate().T_world_camera);
+      found_.push_back(motion_.state().T_world_body);
+      estimated_.push_back(motion_.estimate().T_world_body);
     }
   }
 
@@ -49,14 +49,14 @@ TEST_F(LiveMotionTest, EstimatesBetterThanItFinds) {
 
 TEST_F(LiveMotionTest, FindsItsWayByTheLastFrame) {
   follow_to(100);
-  EXPECT_TRUE(motion_.state().T_world_camera.isApprox(simulated_.frames[100].sightings.T_world_camera));
+  EXPECT_TRUE(motion_.state().T_world_body.isApprox(simulated_.frames[100].sightings.T_world_body));
   EXPECT_EQ(motion_.state().time, simulated_.frames[100].time);
   EXPECT_EQ(motion_.estimate().time, simulated_.frames[100].time);
 }
 
 TEST_F(LiveMotionTest, KnowsLessWithEveryFrameThatIsNotMeasured) {
   follow_to(100);
-  const CameraState before = motion_.estimate();
+  const MotionState before = motion_.estimate();
   motion_.pass(simulated_.frames[101].time);
   EXPECT_GT(motion_.estimate().covariance(0, 0), before.covariance(0, 0));
   EXPECT_EQ(motion_.estimate().time, simulated_.frames[101].time);
@@ -65,10 +65,10 @@ TEST_F(LiveMotionTest, KnowsLessWithEveryFrameThatIsNotMeasured) {
 TEST_F(LiveMotionTest, GoesWhereItIsFoundAfterAJump) {
   follow_to(100);
   FrameLikelihood far = simulated_.frames[101];
-  far.sightings.T_world_camera.translation() += Eigen::Vector3d(1, 2, 3);
+  far.sightings.T_world_body.translation() += Eigen::Vector3d(1, 2, 3);
   motion_.jump(far.time, update_of(far), kDepth_m, kFrame_s);
-  for (const CameraState& state : {motion_.state(), motion_.estimate()}) {
-    EXPECT_LT((state.T_world_camera.translation() - far.sightings.T_world_camera.translation()).norm(), 1e-6);
+  for (const MotionState& state : {motion_.state(), motion_.estimate()}) {
+    EXPECT_LT((state.T_world_body.translation() - far.sightings.T_world_body.translation()).norm(), 1e-6);
   }
 }
 
@@ -76,8 +76,8 @@ TEST_F(LiveMotionTest, FollowsTheMapThatWasAdjusted) {
   follow_to(50);
   const Eigen::Isometry3d T = random_.pose();
   motion_.correct(T);
-  EXPECT_TRUE(motion_.state().T_world_camera.isApprox(T));
-  EXPECT_TRUE(motion_.estimate().T_world_camera.isApprox(T));
+  EXPECT_TRUE(motion_.state().T_world_body.isApprox(T));
+  EXPECT_TRUE(motion_.estimate().T_world_body.isApprox(T));
 }
 
 }  // namespace

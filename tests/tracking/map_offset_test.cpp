@@ -118,8 +118,8 @@ double mean_nees_of_pose(bool is_considered) {
     test::RandomGeometry random(kSeed + trial);
     test::SimulatedCamera simulated = test::simulated_camera(random);
     simulated.noise = {isotropic_noise(0.5, 0.2), isotropic_noise(2.0, 1.0)};
-    CameraState belief = test::belief_before_points(0.5);
-    const CameraState truth = moved_by(belief, test::drawn(random, belief.covariance));
+    MotionState belief = test::belief_before_points(0.5);
+    const MotionState truth = moved_by(belief, test::drawn(random, belief.covariance));
     auto frames = simulated.recording(truth, 20, random);
     MapOffset offset;
     offset.centre_world = {0.2, -0.1, 0.3};
@@ -132,8 +132,8 @@ double mean_nees_of_pose(bool is_considered) {
     if (is_considered) belief.map_offset = offset;
     const auto steps = test::filtered(simulated, belief, frames, test::options_as_simulated(simulated.noise));
     if (steps.size() != frames.size()) return -1.0;
-    const CameraState& state = steps.back().state;
-    const Vector6d off = difference(state.T_world_camera, frames.back().truth.T_world_camera);
+    const MotionState& state = steps.back().state;
+    const Vector6d off = difference(state.T_world_body, frames.back().truth.T_world_body);
     sum += off.dot(state.covariance.topLeftCorner<6, 6>().ldlt().solve(off));
   }
   return sum / kTrials;

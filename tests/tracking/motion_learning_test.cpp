@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/motion_learning.h"
+#include "estimation/motion_learning.h"
 
 #include <cmath>
 
@@ -24,7 +24,7 @@ class LearnMotion : public testing::Test {
     simulated_.noise.jerk = sigmas.cwiseAbs2().asDiagonal();
     simulated_.noise.jerk(0, 1) = simulated_.noise.jerk(1, 0) = 0.4;
     for (int i = 0; i < 30; ++i) {
-      const CameraState truth = moved_by(belief_, test::drawn(random_, belief_.covariance));
+      const MotionState truth = moved_by(belief_, test::drawn(random_, belief_.covariance));
       recorded_.push_back(simulated_.recording(truth, 15, random_));
     }
   }
@@ -51,7 +51,7 @@ class LearnMotion : public testing::Test {
 
   test::RandomGeometry random_{kSeed};
   test::SimulatedCamera simulated_ = test::simulated_camera(random_);
-  const CameraState belief_ = test::belief_before_points(0.05);
+  const MotionState belief_ = test::belief_before_points(0.05);
   std::vector<std::vector<test::SimulatedFrame>> recorded_;
   std::vector<double> log_evidence_;
 };
@@ -83,7 +83,7 @@ TEST_F(LearnMotion, LearnsHowOftenTheMotionIsAManoeuvre) {
   const Matrix6d calm = simulated_.noise.jerk, jump = isotropic_noise(1.0, 0.2);
   double jumps = 0.0, frames_seen = 0.0;
   for (auto& frames : recorded_) {
-    CameraState state = moved_by(belief_, test::drawn(random_, belief_.covariance));
+    MotionState state = moved_by(belief_, test::drawn(random_, belief_.covariance));
     for (test::SimulatedFrame& frame : frames) {
       const bool is_manoeuvre = random_.uniform(0, 1) < 0.1;
       simulated_.noise.jump = is_manoeuvre ? jump : Matrix6d::Zero();

@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "estimation/pose_update.h"
+#include "tests/support/motion_states.h"
 #include "tests/support/synthetic_scene.h"
-#include "tests/tracking/camera_states.h"
 
 namespace alidade {
 namespace {
@@ -18,24 +18,24 @@ constexpr unsigned kSeed = 59;
 
 TEST(PaperState, IsTheStateInOtherCoordinates) {
   test::RandomGeometry random(kSeed);
-  const CameraState state = test::random_unaccelerated_state(random, 0.1);
+  const MotionState state = test::random_unaccelerated_state(random, 0.1);
   const Vector13d s = to_paper_state(state).s;
   const Eigen::Matrix3d R_camera_world = Eigen::Quaterniond(s(3), s(4), s(5), s(6)).toRotationMatrix();
-  EXPECT_EQ(s.head<3>(), state.T_world_camera.translation());
-  EXPECT_LT((R_camera_world - state.T_world_camera.linear().transpose()).norm(), 1e-12);
+  EXPECT_EQ(s.head<3>(), state.T_world_body.translation());
+  EXPECT_LT((R_camera_world - state.T_world_body.linear().transpose()).norm(), 1e-12);
   EXPECT_EQ(s.segment<3>(7), state.v_world);
   // The paper turns its quaternion by q ⊗ q{ω Δt}: world → camera after a short time.
   const Eigen::Matrix3d turned = R_camera_world * exp_so3(1e-3 * s.tail<3>());
-  const CameraState next = predict(state, state.time + from_seconds(1e-3), {});
-  EXPECT_LT((turned - next.T_world_camera.linear().transpose()).norm(), 1e-9);
+  const MotionState next = predict(state, state.time + from_seconds(1e-3), {});
+  EXPECT_LT((turned - next.T_world_body.linear().transpose()).norm(), 1e-9);
 }
 
 TEST(PaperState, LeadsBackToTheState) {
   test::RandomGeometry random(kSeed);
   for (int trial = 0; trial < 5; ++trial) {
-    CameraState state = test::random_unaccelerated_state(random, 0.1);
+    MotionState state = test::random_unaccelerated_state(random, 0.1);
     state.time = Timestamp(from_seconds(7));
-    const CameraState back = from_paper_state(to_paper_state(state), state.time);
+    const MotionState back = from_paper_state(to_paper_state(state), state.time);
     EXPECT_LT(error_between(state, back).norm(), 1e-9);
     EXPECT_LT((back.covariance - state.covariance).cwiseAbs().maxCoeff(), 1e-9) << "seed " << kSeed;
     EXPECT_EQ(back.time, state.time);
@@ -44,7 +44,7 @@ TEST(PaperState, LeadsBackToTheState) {
 
 TEST(PaperState, CarriesTheCovarianceByItsDerivative) {
   test::RandomGeometry random(kSeed);
-  const CameraState state = test::random_unaccelerated_state(random, 0.1);
+  const MotionState state = test::random_unaccelerated_state(random, 0.1);
   Eigen::Matrix<double, 13, 12> J;
   for (int i = 0; i < 12; ++i) {
     const Vector18d step = 1e-6 * Vector18d::Unit(i);
@@ -64,9 +64,9 @@ TEST(PaperMeasurementJacobian, IsTheDerivative) {
   test::RandomGeometry random(kSeed);
   const Camera camera = test::vga_camera();
   for (int trial = 0; trial < 10; ++trial) {
-    const CameraState state = test::random_unaccelerated_state(random, 0.1);
+    const MotionState state = test::random_unaccelerated_state(random, 0.1);
     const Eigen::Vector3d p_camera(random.uniform(-0.8, 0.8), random.uniform(-0.8, 0.8), random.uniform(2, 4));
-    const Eigen::Vector3d p_world = state.T_world_camera * p_camera;
+    const Eigen::Vector3d p_world = state.T_world_body * p_camera;
     const Vector13d s = to_paper_state(state).s;
     const auto H = paper_measurement_jacobian(camera, s, p_world);
     for (int i = 0; i < 13; ++i) {
@@ -79,7 +79,7 @@ TEST(PaperMeasurementJacobian, IsTheDerivative) {
 }
 
 TEST(PaperMeasurementJacobian, IsZeroBehindTheCamera) {
-  const Vector13d s = to_paper_state(CameraState{}).s;
+  const Vector13d s = to_paper_state(MotionState{}).s;
   EXPECT_TRUE(paper_measurement_jacobian(test::vga_camera(), s, {0, 0, -2}).isZero());
 }
 
@@ -90,13 +90,13 @@ class PaperFilter : public testing::Test {
     predicted_ = predict(predicted_, predicted_.time + from_seconds(0.03), {isotropic_noise(1, 1), Matrix6d::Zero()});
     Vector6d off;
     off << 0.005, -0.0025, 0.005, 0.001, 0.0015, -0.001;
-    predicted_.T_world_camera = predicted_.T_world_camera * perturbation(off);
+    predicted_.T_world_body = predicted_.T_world_body * perturbation(off);
   }
 
   test::RandomGeometry random_{kSeed};
   Camera camera_ = test::vga_camera();
   PointMap map_ = test::make_map(camera_, 60, 1, 0.5, random_);
-  CameraState predicted_;
+  MotionState predicted_;
 };
 
 // Near the prediction one additive step is as good as the iterated one: within a twentieth of a standard deviation.
@@ -104,12 +104,12 @@ TEST_F(PaperFilter, IsNearTheIteratedUpdate) {
   const auto observations = test::observations_of(map_, 0);
   PoseUpdateOptions options;
   options.map_uncertainty = MapUncertainty::Ignored;
-  const PosePrior prior{predicted_.T_world_camera, predicted_.covariance.topLeftCorner<6, 6>().inverse()};
+  const PosePrior prior{predicted_.T_world_body, predicted_.covariance.topLeftCorner<6, 6>().inverse()};
   const auto exact = update_pose(camera_, prior, observations, options);
   ASSERT_TRUE(exact);
   ASSERT_EQ(exact->inlier_count, static_cast<int>(observations.size()));
-  const CameraState state = update_paper_filter(camera_, predicted_, observations);
-  const Vector6d off = difference(exact->T_world_camera, state.T_world_camera);
+  const MotionState state = update_paper_filter(camera_, predicted_, observations);
+  const Vector6d off = difference(exact->T_world_camera, state.T_world_body);
   EXPECT_LT(std::sqrt(off.dot(exact->covariance.inverse() * off)), 0.05);
   const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6d> ratios(state.covariance.topLeftCorner<6, 6>(),
                                                                   exact->covariance);
@@ -119,15 +119,15 @@ TEST_F(PaperFilter, IsNearTheIteratedUpdate) {
 
 // The velocities follow the pose as in absorb.
 TEST_F(PaperFilter, MovesTheVelocitiesAlong) {
-  const CameraState state = update_paper_filter(camera_, predicted_, test::observations_of(map_, 0));
-  const CameraState expected = absorb(predicted_, state.T_world_camera, state.covariance.topLeftCorner<6, 6>());
+  const MotionState state = update_paper_filter(camera_, predicted_, test::observations_of(map_, 0));
+  const MotionState expected = absorb(predicted_, state.T_world_body, state.covariance.topLeftCorner<6, 6>());
   EXPECT_GT(expected.v_world.norm(), 0.05);
   EXPECT_LT((state.v_world - expected.v_world).norm(), 0.02 * expected.v_world.norm());
-  EXPECT_LT((state.omega_camera - expected.omega_camera).norm(), 0.02 * expected.omega_camera.norm());
+  EXPECT_LT((state.omega_body - expected.omega_body).norm(), 0.02 * expected.omega_body.norm());
 }
 
 TEST_F(PaperFilter, StaysWithoutSightings) {
-  const CameraState state = update_paper_filter(camera_, predicted_, {});
+  const MotionState state = update_paper_filter(camera_, predicted_, {});
   EXPECT_LT(error_between(predicted_, state).norm(), 1e-9);
   EXPECT_LT((state.covariance - predicted_.covariance).cwiseAbs().maxCoeff(), 1e-9);
 }

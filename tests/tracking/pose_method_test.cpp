@@ -30,7 +30,7 @@ class EstimatePose : public testing::Test {
   PointMap map_ = test::make_map(camera_, 60, 1, 0.0, random_);
   Eigen::Isometry3d truth_ = map_.keyframes[0].T_world_camera;
   std::vector<PointObservation> observations_ = test::observations_of(map_, 0);
-  CameraState predicted_;
+  MotionState predicted_;
 };
 
 TEST_F(EstimatePose, GivesThePoseOnExactSightingsByEveryMethod) {
@@ -62,7 +62,7 @@ TEST_F(EstimatePose, LeavesThePredictionOutWhereItIsTold) {
   const auto held = estimate_pose(PoseMethod::Ekf, camera_, predicted_, observations_, {}, true);
   const auto free = estimate_pose(PoseMethod::Ekf, camera_, predicted_, observations_, {}, false);
   ASSERT_TRUE(held && free);
-  EXPECT_LT(difference(predicted_.T_world_camera, held->T_world_camera).norm(), 1e-3);
+  EXPECT_LT(difference(predicted_.T_world_body, held->T_world_camera).norm(), 1e-3);
   EXPECT_LT(difference(truth_, free->T_world_camera).norm(), 1e-5);
 }
 

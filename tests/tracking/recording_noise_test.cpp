@@ -36,13 +36,13 @@ class LearnedRecordingNoise : public testing::Test {
   test::RandomGeometry random_{kSeed};
   const Matrix6d common_ = isotropic_noise(3e-3, 2e-3);
   const test::SimulatedLikelihoods simulated_ = test::simulated_likelihoods(300, common_, random_);
-  const CameraState first_ = test::before_likelihoods(simulated_);
+  const MotionState first_ = test::before_likelihoods(simulated_);
   const RecordingNoise guess_{guessed_motion(0.3, 0.3, 1.0 / 30)};
 
   std::vector<Eigen::Isometry3d> filtered_with(const RecordingNoise& noise) const {
     std::vector<Eigen::Isometry3d> poses;
     for (const MotionStep& step : filter_recording(first_, simulated_.frames, noise)) {
-      poses.push_back(step.state.T_world_camera);
+      poses.push_back(step.state.T_world_body);
     }
     return poses;
   }
@@ -57,7 +57,7 @@ TEST_F(LearnedRecordingNoise, FindsWhatFramesAreOffBy) {
 
 TEST_F(LearnedRecordingNoise, MakesTheFilterBetter) {
   std::vector<Eigen::Isometry3d> measured;
-  for (const FrameLikelihood& frame : simulated_.frames) measured.push_back(frame.sightings.T_world_camera);
+  for (const FrameLikelihood& frame : simulated_.frames) measured.push_back(frame.sightings.T_world_body);
   const double alone = test::position_rmse(measured, simulated_.truth);
   const RecordingNoise noise = learned(guess_, first_, simulated_.frames, 30);
   const double with = test::position_rmse(filtered_with(noise), simulated_.truth);

@@ -34,8 +34,8 @@ inline SimulatedLikelihoods simulated_likelihoods(int count, const Matrix6d& com
 }
 
 /// Where such a camera begins, as good as unknown.
-inline CameraState before_likelihoods(const SimulatedLikelihoods& simulated) {
-  CameraState state = resting_state(simulated.truth[0].time, simulated.frames[0].sightings.T_world_camera,
+inline MotionState before_likelihoods(const SimulatedLikelihoods& simulated) {
+  MotionState state = resting_state(simulated.truth[0].time, simulated.frames[0].sightings.T_world_body,
                                     isotropic_noise(0.1, 0.1), 1.0, 1.0);
   state.covariance.block<6, 6>(12, 12) = isotropic_noise(1.0, 1.0);
   return state;

@@ -5,8 +5,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "tests/support/motion_states.h"
 #include "tests/support/synthetic_scene.h"
-#include "tests/tracking/camera_states.h"
 #include "tracking/camera_filter.h"
 
 namespace alidade::test {
@@ -21,7 +21,7 @@ Eigen::Matrix<double, kSize, 1> drawn(RandomGeometry& random, const Eigen::Matri
 }
 
 struct SimulatedFrame {
-  CameraState truth;
+  MotionState truth;
   std::vector<PointObservation> observations;
 };
 
@@ -34,14 +34,14 @@ struct SimulatedCamera {
   double noise_px = 0.5;
 
   /// The state after a step, with what drives it drawn from the noise.
-  CameraState next(const CameraState& state, RandomGeometry& random) const {
+  MotionState next(const MotionState& state, RandomGeometry& random) const {
     return driven(jumped(state, drawn(random, noise.jump)), dt, drawn(random, noise.acceleration),
                   drawn(random, noise.jerk));
   }
 
-  SimulatedFrame frame(const CameraState& truth, RandomGeometry& random) const {
+  SimulatedFrame frame(const MotionState& truth, RandomGeometry& random) const {
     SimulatedFrame frame{truth, {}};
-    for (const Sighting& s : sightings_from(camera, points, truth.T_world_camera, noise_px, random)) {
+    for (const Sighting& s : sightings_from(camera, points, truth.T_world_body, noise_px, random)) {
       PointObservation o;
       o.pixel = s.pixel;
       o.sigma_px = s.sigma_px;
@@ -52,7 +52,7 @@ struct SimulatedCamera {
   }
 
   /// `frames` frames of a motion that goes on from `start`.
-  std::vector<SimulatedFrame> recording(CameraState start, int frames, RandomGeometry& random) const {
+  std::vector<SimulatedFrame> recording(MotionState start, int frames, RandomGeometry& random) const {
     std::vector<SimulatedFrame> recorded;
     for (int k = 0; k < frames; ++k) recorded.push_back(frame(start = next(start, random), random));
     return recorded;
@@ -68,11 +68,11 @@ inline SimulatedCamera simulated_camera(RandomGeometry& random, int points = 60)
 
 /// A belief before those points: slow motion, known to about 2 cm, 5 mrad, 0.1 m/s, 0.05 rad/s and the accelerations
 /// to the given sigma along each axis (m/s², rad/s²).
-inline CameraState belief_before_points(double acceleration_sigma) {
-  CameraState state;
-  state.T_world_camera = looking_at({6, 0, 0.5}, {0, 0, 0});
+inline MotionState belief_before_points(double acceleration_sigma) {
+  MotionState state;
+  state.T_world_body = looking_at({6, 0, 0.5}, {0, 0, 0});
   state.v_world = {0.1, 0.3, -0.1};
-  state.omega_camera = {0.02, -0.05, 0.03};
+  state.omega_body = {0.02, -0.05, 0.03};
   Vector18d sigmas;
   sigmas << Eigen::Vector3d::Constant(0.02), Eigen::Vector3d::Constant(0.005), Eigen::Vector3d::Constant(0.1),
       Eigen::Vector3d::Constant(0.05), Vector6d::Constant(acceleration_sigma);
@@ -81,7 +81,7 @@ inline CameraState belief_before_points(double acceleration_sigma) {
 }
 
 /// The filter's steps over the frames, as far as it has an answer.
-inline std::vector<MotionStep> filtered(const SimulatedCamera& simulated, CameraState state,
+inline std::vector<MotionStep> filtered(const SimulatedCamera& simulated, MotionState state,
                                         const std::vector<SimulatedFrame>& frames, const CameraFilterOptions& options) {
   std::vector<MotionStep> steps;
   SightingNoise noise;
@@ -105,7 +105,7 @@ inline CameraFilterOptions options_as_simulated(const MotionNoise& noise) {
 }
 
 /// The squared error of a state in units of its own covariance: 18 in the mean where that is honest.
-inline double nees(const CameraState& state, const CameraState& truth) {
+inline double nees(const MotionState& state, const MotionState& truth) {
   const Vector18d error = error_between(state, truth);
   return error.dot(state.covariance.ldlt().solve(error));
 }

@@ -35,21 +35,21 @@ class SlamFilter : public testing::Test {
 
   std::vector<SlamSighting> sightings() {
     std::vector<SlamSighting> sightings;
-    const auto seen = test::sightings_from(simulated_.camera, simulated_.points, camera_.T_world_camera, 0.1, random_);
+    const auto seen = test::sightings_from(simulated_.camera, simulated_.points, camera_.T_world_body, 0.1, random_);
     for (const Sighting& s : seen) sightings.push_back({s.point, s.pixel, s.sigma_px});
     return sightings;
   }
 
   test::RandomGeometry random_{kSeed};
   test::SimulatedCamera simulated_ = test::simulated_camera(random_, kPoints);
-  CameraState camera_;
+  MotionState camera_;
 };
 
 TEST_F(SlamFilter, MeasuresByTheDerivative) {
   const SlamState at = state(0.1);
   const auto pixel_of = [&](const Eigen::Matrix<double, 9, 1>& step) {
     SlamState moved = at;
-    moved.camera.T_world_camera = at.camera.T_world_camera * perturbation(step.head<6>());
+    moved.camera.T_world_body = at.camera.T_world_body * perturbation(step.head<6>());
     moved.points[3] += step.tail<3>();
     return expected_measurement(simulated_.camera, moved, 3)->pixel;
   };
@@ -66,7 +66,7 @@ TEST_F(SlamFilter, MovesTheCameraAsWithoutAMap) {
   const MotionNoise noise{isotropic_noise(0.5, 0.2)};
   const Timestamp time = camera_.time + from_seconds(0.1);
   const SlamState next = predict(state(0.1), time, noise);
-  const CameraState expected = predict(camera_, time, noise);
+  const MotionState expected = predict(camera_, time, noise);
   EXPECT_LT(error_between(expected, camera_of(next)).norm(), 1e-12);
   EXPECT_LT((camera_of(next).covariance - expected.covariance).cwiseAbs().maxCoeff(), 1e-15);
   EXPECT_EQ(next.points, state(0.1).points);
@@ -82,13 +82,13 @@ TEST_F(SlamFilter, IsTheCamerasFilterInAMapThatIsExact) {
     o.sigma_px = s.sigma_px;
     o.p_world = simulated_.points[static_cast<std::size_t>(s.point)].p_world;
   }
-  const PosePrior prior{camera_.T_world_camera, camera_.covariance.topLeftCorner<6, 6>().inverse()};
+  const PosePrior prior{camera_.T_world_body, camera_.covariance.topLeftCorner<6, 6>().inverse()};
   PoseUpdateOptions options;
   options.gate_chi2 = 100;
   const auto exact = update_pose(simulated_.camera, prior, observations, options);
   ASSERT_TRUE(exact);
-  const CameraState expected = absorb(camera_, exact->sightings);
-  const CameraState updated = camera_of(update_slam_filter(simulated_.camera, state(0), seen));
+  const MotionState expected = absorb(camera_, exact->sightings);
+  const MotionState updated = camera_of(update_slam_filter(simulated_.camera, state(0), seen));
   const auto sigmas = expected.covariance.diagonal().head<12>().cwiseSqrt();
   EXPECT_LT(error_between(expected, updated).head<12>().cwiseQuotient(sigmas).norm(), 1e-2) << "seed " << kSeed;
   EXPECT_LT((updated.covariance - expected.covariance).cwiseAbs().maxCoeff(),
@@ -126,7 +126,7 @@ TEST_F(SlamFilter, IsTheLeastSquaresSolutionOfCameraAndPoints) {
 
 TEST_F(SlamFilter, LeavesOutWhatIsBehindTheCamera) {
   SlamState before = state(0.01);
-  before.points[0] = camera_.T_world_camera * Eigen::Vector3d(0, 0, -1);
+  before.points[0] = camera_.T_world_body * Eigen::Vector3d(0, 0, -1);
   const std::array<SlamSighting, 1> seen{{{0, {300, 200}, 1.0}}};
   EXPECT_TRUE(update_slam_filter(simulated_.camera, before, seen).covariance == before.covariance);
 }
@@ -157,20 +157,20 @@ TEST(SlamFilterConsistency, HoldsAndBeatsTheFilterThatTakesTheMapAsExact) {
     test::RandomGeometry random(kSeed + trial);
     test::SimulatedCamera simulated = test::simulated_camera(random, 40);
     simulated.noise = {isotropic_noise(0.5, 0.2)};
-    CameraState outside = test::belief_before_points(0.0);
+    MotionState outside = test::belief_before_points(0.0);
     std::vector<SlamPoint> points;
     for (const MapPoint& p : simulated.points) {
       points.push_back(
           {p.p_world + random.vector(kMapSigmaM), kMapSigmaM * kMapSigmaM * Eigen::Matrix3d::Identity(), {}});
     }
     SlamState in_state = with_points(slam_state(outside), points);
-    const CameraState start = moved_by(outside, test::drawn(random, outside.covariance));
+    const MotionState start = moved_by(outside, test::drawn(random, outside.covariance));
     const auto frames = simulated.recording(start, 20, random);
     for (const test::SimulatedFrame& frame : frames) {
       std::vector<SlamSighting> seen;
       std::vector<PointObservation> observations;
       for (const auto& s :
-           test::sightings_from(simulated.camera, simulated.points, frame.truth.T_world_camera, 0.5, random)) {
+           test::sightings_from(simulated.camera, simulated.points, frame.truth.T_world_body, 0.5, random)) {
         seen.push_back({s.point, s.pixel, s.sigma_px});
         PointObservation& o = observations.emplace_back();
         o.pixel = s.pixel;
@@ -180,9 +180,9 @@ TEST(SlamFilterConsistency, HoldsAndBeatsTheFilterThatTakesTheMapAsExact) {
       in_state = update_slam_filter(simulated.camera, predict(in_state, frame.truth.time, simulated.noise), seen);
       outside =
           update_unscented_filter(simulated.camera, predict(outside, frame.truth.time, simulated.noise), observations);
-      const Eigen::Vector3d& eye = frame.truth.T_world_camera.translation();
-      square_in_state += (in_state.camera.T_world_camera.translation() - eye).squaredNorm();
-      square_outside += (outside.T_world_camera.translation() - eye).squaredNorm();
+      const Eigen::Vector3d& eye = frame.truth.T_world_body.translation();
+      square_in_state += (in_state.camera.T_world_body.translation() - eye).squaredNorm();
+      square_outside += (outside.T_world_body.translation() - eye).squaredNorm();
     }
     const Eigen::Matrix<double, 12, 1> off = error_between(in_state.camera, frames.back().truth).head<12>();
     nees += off.dot(in_state.covariance.topLeftCorner<12, 12>().ldlt().solve(off)) / kTrials;

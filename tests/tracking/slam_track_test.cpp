@@ -22,9 +22,9 @@ class SlamTrackTest : public testing::Test {
   }
 
   // Sightings of points `first` to `last` - 1.
-  SlamFrame frame(const CameraState& truth, int first, int last) {
+  SlamFrame frame(const MotionState& truth, int first, int last) {
     SlamFrame frame{truth.time, {isotropic_noise(0.1, 0.05)}, {}, 0.5};
-    const auto seen = test::sightings_from(simulated_.camera, map_.points, truth.T_world_camera, 0.5, random_);
+    const auto seen = test::sightings_from(simulated_.camera, map_.points, truth.T_world_body, 0.5, random_);
     for (const Sighting& s : seen) {
       if (s.point >= first && s.point < last) frame.inliers.push_back({s.point, -1, s.pixel});
     }
@@ -35,18 +35,18 @@ class SlamTrackTest : public testing::Test {
   test::SimulatedCamera simulated_ = test::simulated_camera(random_);
   PointMap map_;
   std::vector<int> living_;
-  CameraState camera_ = test::belief_before_points(0.0);
+  MotionState camera_ = test::belief_before_points(0.0);
 };
 
 TEST_F(SlamTrackTest, FollowsTheCamera) {
   SlamTrack track{slam_state(camera_), {}};
-  CameraState truth = moved_by(camera_, test::drawn(random_, camera_.covariance));
+  MotionState truth = moved_by(camera_, test::drawn(random_, camera_.covariance));
   for (int k = 0; k < 20; ++k) {
     truth = simulated_.next(truth, random_);
     track = follow(simulated_.camera, track, map_, living_, frame(truth, 0, 60), 40);
   }
   EXPECT_EQ(track.map_points.size(), 40u);
-  const Vector6d off = difference(track.state.camera.T_world_camera, truth.T_world_camera);
+  const Vector6d off = difference(track.state.camera.T_world_body, truth.T_world_body);
   const Matrix6d P = track.state.covariance.topLeftCorner<6, 6>();
   EXPECT_LT(off.dot(P.ldlt().solve(off)), 22.5) << "6 dof, 99.9 %, seed " << kSeed;
   EXPECT_LT(off.norm(), 0.02);

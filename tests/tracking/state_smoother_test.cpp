@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/state_smoother.h"
+#include "estimation/state_smoother.h"
 
 #include <vector>
 
@@ -19,9 +19,9 @@ using Matrix9d = Eigen::Matrix<double, 9, 9>;
 using Vector9d = Eigen::Matrix<double, 9, 1>;
 
 // The translational part of a state or an error: place, velocity, acceleration.
-Vector9d place_of(const CameraState& state) {
+Vector9d place_of(const MotionState& state) {
   Vector9d x;
-  x << state.T_world_camera.translation(), state.v_world, state.a_world;
+  x << state.T_world_body.translation(), state.v_world, state.a_world;
   return x;
 }
 
@@ -44,16 +44,16 @@ class SmoothLinear : public testing::Test {
     noise_.jerk = isotropic_noise(10.0, 1.0);
     Vector18d sigmas;
     sigmas << Vector6d::Constant(0.1), Vector6d::Constant(0.5), Vector6d::Constant(2.0);
-    CameraState state;
+    MotionState state;
     state.covariance = sigmas.cwiseAbs2().asDiagonal();
     first_ = state;
     for (int k = 0; k < kFrames; ++k) {
       MotionStep step;
       step.predicted = k == 0 ? state : predict(state, state.time + from_seconds(kStep_s), noise_);
       PoseLikelihood sightings;
-      sightings.T_world_camera.translation() = random_.vector(0.3);
+      sightings.T_world_body.translation() = random_.vector(0.3);
       sightings.information.topLeftCorner<3, 3>() = R_.inverse();
-      measured_.push_back(sightings.T_world_camera.translation());
+      measured_.push_back(sightings.T_world_body.translation());
       step.state = state = absorb(step.predicted, sightings);
       steps_.push_back(step);
     }
@@ -62,7 +62,7 @@ class SmoothLinear : public testing::Test {
   test::RandomGeometry random_{kSeed};
   MotionNoise noise_;
   const Eigen::Matrix3d R_ = test::random_covariance<3>(random_, 0.05);
-  CameraState first_;
+  MotionState first_;
   std::vector<Eigen::Vector3d> measured_;
   std::vector<MotionStep> steps_;
 };
@@ -128,7 +128,7 @@ TEST_F(SmoothLinear, IsEmptyForNothing) {
 
 // What is known to be constant stays so: no covariance, no noise, and no division by it.
 TEST_F(SmoothLinear, LeavesWhatIsKnownExactly) {
-  CameraState state = first_;
+  MotionState state = first_;
   state.covariance.bottomRows<6>().setZero();
   state.covariance.rightCols<6>().setZero();
   std::vector<MotionStep> steps;
@@ -136,7 +136,7 @@ TEST_F(SmoothLinear, LeavesWhatIsKnownExactly) {
     MotionStep step;
     step.predicted = predict(state, state.time + from_seconds(kStep_s), {noise_.acceleration, Matrix6d::Zero()});
     PoseLikelihood sightings;
-    sightings.T_world_camera.translation() = z;
+    sightings.T_world_body.translation() = z;
     sightings.information.topLeftCorner<3, 3>() = R_.inverse();
     step.state = state = absorb(step.predicted, sightings);
     steps.push_back(step);
@@ -144,7 +144,7 @@ TEST_F(SmoothLinear, LeavesWhatIsKnownExactly) {
   const SmoothedState smoothed = smooth(steps).front();
   EXPECT_TRUE(smoothed.state.covariance.allFinite());
   EXPECT_LT(smoothed.state.a_world.norm() + smoothed.state.covariance.bottomRows<6>().norm(), 1e-12);
-  EXPECT_GT(difference(steps.front().state.T_world_camera, smoothed.state.T_world_camera).norm(), 1e-3);
+  EXPECT_GT(difference(steps.front().state.T_world_body, smoothed.state.T_world_body).norm(), 1e-3);
 }
 
 struct Smoothed {
@@ -159,17 +159,17 @@ Smoothed smooth_recordings(int trials) {
     test::RandomGeometry random(kSeed + static_cast<unsigned>(trial));
     test::SimulatedCamera simulated = test::simulated_camera(random);
     simulated.noise = {isotropic_noise(0.5, 0.2), isotropic_noise(2.0, 1.0)};
-    const CameraState belief = test::belief_before_points(0.5);
-    const CameraState truth = moved_by(belief, test::drawn(random, belief.covariance));
+    const MotionState belief = test::belief_before_points(0.5);
+    const MotionState truth = moved_by(belief, test::drawn(random, belief.covariance));
     const auto frames = simulated.recording(truth, 20, random);
     const auto steps = test::filtered(simulated, belief, frames, test::options_as_simulated(simulated.noise));
     const auto smoothed = smooth(steps);
     result.nees += test::nees(smoothed[5].state, frames[5].truth);
     for (std::size_t k = 0; k < smoothed.size(); ++k) {
-      const CameraState &before = steps[k].state, &after = smoothed[k].state;
-      result.square_m2 += difference(after.T_world_camera, frames[k].truth.T_world_camera).head<3>().squaredNorm();
+      const MotionState &before = steps[k].state, &after = smoothed[k].state;
+      result.square_m2 += difference(after.T_world_body, frames[k].truth.T_world_body).head<3>().squaredNorm();
       result.filtered_square_m2 +=
-          difference(before.T_world_camera, frames[k].truth.T_world_camera).head<3>().squaredNorm();
+          difference(before.T_world_body, frames[k].truth.T_world_body).head<3>().squaredNorm();
       ++frames_seen;
     }
   }

@@ -19,7 +19,7 @@ class SmoothedTrack : public testing::Test {
       report.time = simulated_.frames[k].time;
       report.state = FrameState::Tracked;
       report.likelihood = simulated_.frames[k].sightings;
-      report.T_world_camera = report.likelihood.T_world_camera;
+      report.T_world_camera = report.likelihood.T_world_body;
       reports_.push_back(report);
     }
   }

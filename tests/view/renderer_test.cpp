@@ -249,11 +249,31 @@ TEST(Renderer, ShowReplacesTheScene) {
   EXPECT_EQ(cv::mean(renderer.render(camera, Eigen::Isometry3d::Identity()))[0], 0);
 }
 
+TEST(RenderViewpoint, WhatLiesBehindShowsThroughATranslucentSurface) {
+  Scene scene = black_scene();
+  scene.surfaces.push_back(square({0, 0, 2}, 4, plain(cv::Scalar::all(200))));
+  const TexturedSurface shape = square({0, 0, 1}, 0.2, plain(cv::Scalar::all(0)));
+  scene.translucent.push_back({shape.vertices_world, shape.triangles, {100, 0, 0}, 0.25});
+  Renderer renderer;
+  renderer.show(scene);
+  Viewpoint view;
+  view.eye_world = Eigen::Vector3d::Zero();
+  view.target_world = {0, 0, 1};
+  const cv::Mat picture = renderer.render(view, {200, 150});
+  const cv::Vec3b through = picture.at<cv::Vec3b>(75, 100), beside = picture.at<cv::Vec3b>(20, 30);
+  EXPECT_EQ(beside, cv::Vec3b(200, 200, 200));
+  EXPECT_NEAR(through[0], 150, 3);  // 0.75 * 200
+  EXPECT_NEAR(through[2], 175, 3);  // 0.75 * 200 + 0.25 * 100
+}
+
 TEST(Renderer, RefusesSurfacesThatDoNotFitAndImpossibleCameras) {
   Renderer renderer;
   Scene scene;
   scene.surfaces.push_back(square({0, 0, 1}, 1, plain(cv::Scalar::all(1))));
   scene.surfaces[0].triangles[0][1] = 4;
+  EXPECT_THROW(renderer.show(scene), std::invalid_argument);
+  scene.surfaces.clear();
+  scene.translucent.push_back({{{0, 0, 1}}, {{0, 0, 1}}, palette::kInk, 0.5});
   EXPECT_THROW(renderer.show(scene), std::invalid_argument);
   EXPECT_THROW(renderer.render(Camera{}, Eigen::Isometry3d::Identity()), std::invalid_argument);
   EXPECT_THROW(renderer.render(odd_camera(), Eigen::Isometry3d::Identity(), 0), std::invalid_argument);

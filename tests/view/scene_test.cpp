@@ -110,5 +110,28 @@ TEST(TrackScene, HasPyramidsToSeeWhereTheCameraOnlyTurned) {
   EXPECT_NEAR(track_scene(picture).pyramid_depth_m, 0.25, 1e-9);
 }
 
+TEST(CovarianceEllipsoid, LiesAsManyStandardDeviationsAway) {
+  Eigen::Matrix3d covariance;
+  covariance << 4, 1, 0, 1, 2, 0.5, 0, 0.5, 1;
+  const Eigen::Vector3d mean(1, 2, 3);
+  const TranslucentSurface surface = covariance_ellipsoid(mean, 1e-6 * covariance, 3.0, palette::kEstimate);
+  ASSERT_FALSE(surface.triangles.empty());
+  for (const auto& vertex : surface.vertices_world) {
+    const Eigen::Vector3d off = vertex - mean;
+    EXPECT_NEAR(off.dot((1e-6 * covariance).inverse() * off), 9.0, 1e-6);
+  }
+  for (const auto& triangle : surface.triangles) {
+    EXPECT_GE(triangle.minCoeff(), 0);
+    EXPECT_LT(triangle.maxCoeff(), static_cast<int>(surface.vertices_world.size()));
+  }
+}
+
+TEST(CovarianceEllipsoid, IsFlatWhereTheCovarianceIs) {
+  const Eigen::Matrix3d flat = Eigen::Vector3d(1, 1, 0).asDiagonal();
+  for (const auto& vertex : covariance_ellipsoid({0, 0, 5}, flat, 2.0, palette::kInk).vertices_world) {
+    EXPECT_NEAR(vertex.z(), 5.0, 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace alidade

@@ -114,6 +114,17 @@ TEST(FrameScene, LooksFromBehindAndAboveTheCameras) {
   EXPECT_GT((T.linear().transpose() * (frame_scene(scene, {0.6, 0.5, 1.0}).eye_world - view.target_world)).x(), 0);
 }
 
+TEST(FrameScene, TakesTheScenesWordForUp) {
+  Scene scene;
+  scene.cameras.emplace_back();  // whose up is -y
+  scene.up_world = Eigen::Vector3d::UnitZ();
+  scene.paths.push_back({{{0, 0, 0}, {1, 1, 0}}, palette::kInk, 1.0});
+  const Viewpoint view = frame_scene(scene, {0.3, 0.5, 1.0});
+  EXPECT_TRUE(view.up_world.isApprox(Eigen::Vector3d::UnitZ()));
+  const Eigen::Vector3d backward = (view.eye_world - view.target_world).normalized();
+  EXPECT_NEAR(std::asin(backward.z()), 0.5, 1e-9);
+}
+
 TEST(FrameScene, CopesWithNothingAndWithASinglePoint) {
   EXPECT_TRUE(frame_scene({}).eye_world.allFinite());
   Scene scene;

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <chrono>
+#include <optional>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "app/body_pipeline.h"
+#include "app/body_report.h"
+#include "app/commands/verbs.h"
+#include "datasets/detectors.h"
+#include "io/body_file.h"
+#include "io/detector_file.h"
+#include "io/reading_file.h"
+
+namespace alidade {
+namespace {
+
+std::int64_t in_kilobytes(std::int64_t bytes) {
+  return (bytes + 999) / 1000;
+}
+
+class TrackBodyCommand : public Command {
+ public:
+  explicit TrackBodyCommand(CLI::App& flags) {
+    flags.add_option("BODY", bodies_, "CSV of markers: marker, x_m, y_m, z_m, and body where there are several")
+        ->required();
+    flags.add_option("DETECTORS", detectors_, "line detectors: our YAML, detectors.json of laser sweeps, or a folder")
+        ->required();
+    flags.add_option("OBSERVATIONS", observations_, "CSV of readings in order of time; -: standard input")->required();
+    flags.add_option("--start", start_s_, "s, by the observations' clock: pass over what is before");
+    flags.add_option("--end", end_s_, "s, by the observations' clock: stop there");
+    flags.add_flag("--stream", stream_, "poses as JSON lines on standard output, as soon as they are known");
+    bind(options_, track_);
+  }
+
+  ExitCode run(const RunContext& context) override {
+    const std::vector<RigidBody> bodies = read_bodies(bodies_);
+    const DetectorRig rig = read_detectors(detectors_);
+    ReadingReader reader(observations_, rig.detectors, bodies, context.stop);
+    ResultDirectory directory(context.output, "track body");
+    BodyRecord record(directory, rig.detectors, bodies, detail_of(track_));
+    const auto begin = std::chrono::steady_clock::now();
+    const std::optional<InputError> fault = follow(context, reader, rig.detectors, bodies, record);
+    if (fault && !record.run().has_answer()) throw *fault;
+
+    BodyRun run = record.commit();
+    run.tracking_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    run.source = observations_ == "-" ? "standard input" : observations_;
+    run.method = describe(track_);
+    run.interrupted = context.stop.stop_requested();
+    if (fault) run.fault = fault->what();
+    write_bodies(directory.path("body.csv"), bodies);
+    write_detector_rig(directory.path("detectors.yaml"), rig);
+    write_body_report(run, directory, context.arguments, options_.to_yaml());
+    for (const std::string& warning : run.warnings) context.warn(warning);
+    const nlohmann::json summary = summary_of(run);
+    directory.commit(summary);
+    tell(context, run, summary);
+    if (fault) throw *fault;
+    if (run.interrupted) return ExitCode::Interrupted;
+    return answer(context, run);
+  }
+
+ private:
+  // Until the observations end, the user stops it, or a line is wrong: what was wrong, then.
+  std::optional<InputError> follow(const RunContext& context, ReadingReader& reader,
+                                   const std::vector<LineDetector>& detectors, const std::vector<RigidBody>& bodies,
+                                   BodyRecord& record) const {
+    const PoseDetail detail = detail_of(track_);
+    BodyPipeline::LiveSink live;
+    if (stream_) {
+      live = [&](const std::string& body, const BodyEstimate& e) { context.stream(pose_event(body, e, detail)); };
+    }
+    BodyPipeline pipeline(detectors, bodies, track_, record, live);
+    std::error_code no_size;
+    const auto size = observations_ == "-" ? 0 : std::filesystem::file_size(observations_, no_size);
+    const auto total = no_size ? 0 : static_cast<std::int64_t>(size);
+    const auto show_progress = [&] {
+      context.progress({"tracking (kB)", in_kilobytes(reader.bytes()), in_kilobytes(total), ""});
+    };
+    std::optional<InputError> fault;
+    try {
+      while (const auto reading = reader.next()) {
+        if (context.stop.stop_requested() || (end_s_ && to_seconds(reading->time.time_since_epoch()) > *end_s_)) break;
+        if (start_s_ && to_seconds(reading->time.time_since_epoch()) < *start_s_) continue;
+        if (pipeline.add(*reading)) show_progress();
+      }
+    } catch (const InputError& error) {
+      fault = error;
+    }
+    pipeline.finish();
+    show_progress();
+    return fault;
+  }
+
+  // With --stream standard output is for poses alone.
+  void tell(const RunContext& context, const BodyRun& run, const nlohmann::json& summary) const {
+    context.publish(summary);
+    if (stream_) return;
+    for (const std::string& line : table_lines(run)) context.tell(line);
+    context.tell(fmt::format("written to {}", context.output.string()));
+  }
+
+  ExitCode answer(const RunContext& context, const BodyRun& run) const {
+    if (run.has_answer()) return ExitCode::Success;
+    context.warn(
+        run.batches == 0
+            ? fmt::format("{}: holds no reading", run.source)
+            : fmt::format("{}: no pose is determined by the readings: are the detectors, the body and the unit "
+                          "of the readings those of this recording?",
+                          run.source));
+    return ExitCode::NoAnswer;
+  }
+
+  std::string bodies_, detectors_, observations_;
+  std::optional<double> start_s_, end_s_;
+  bool stream_ = false;
+  BodyTrackOptions track_;
+};
+
+}  // namespace
+
+Verb track_body_verb() {
+  return {"track body", "where rigid bodies were, from line detectors that read their markers",
+          "alidade track body body.csv detectors.yaml observations.csv -o track", OutputUse::Required,
+          make_command<TrackBodyCommand>};
+}
+
+}  // namespace alidade

@@ -1,0 +1,441 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "estimation/motion_state.h"
+
+#include <cmath>
+
+#include <Eigen/LU>
+#include <gtest/gtest.h>
+
+#include "geometry/rotation.h"
+#include "tests/support/motion_states.h"
+
+namespace alidade {
+namespace {
+
+using Matrix24d = Eigen::Matrix<double, 24, 24>;
+
+constexpr unsigned kSeed = 53;
+
+Timestamp after(const MotionState& state, double seconds) {
+  return state.time + from_seconds(seconds);
+}
+
+// How the error of a state moves with that of the state `from` it was made, by central differences.
+template <typename Function>
+Matrix18d derivative_of(const Function& made, const MotionState& from) {
+  Matrix18d F;
+  for (int i = 0; i < 18; ++i) {
+    const Vector18d step = 1e-6 * Vector18d::Unit(i);
+    F.col(i) = (error_between(made(from), made(moved_by(from, step))) -
+                error_between(made(from), made(moved_by(from, -step)))) /
+               2e-6;
+  }
+  return F;
+}
+
+Vector6d draw(test::RandomGeometry& random, double sigma_m, double sigma_rad) {
+  Vector6d xi;
+  xi << random.vector(sigma_m), random.vector(sigma_rad);
+  return xi;
+}
+
+TEST(MoveMotionState, IsUndoneByTheErrorBetween) {
+  test::RandomGeometry random(kSeed);
+  const MotionState state = test::random_state(random, 0.1);
+  Vector18d error;
+  for (double& value : error) value = random.normal(0.3);
+  const MotionState moved = moved_by(state, error);
+  EXPECT_LT((error_between(state, moved) - error).norm(), 1e-12);
+  EXPECT_LT((moved.T_world_body.translation() - state.T_world_body * error.head<3>()).norm(), 1e-12);
+  EXPECT_LT((moved.alpha_body - state.alpha_body - error.tail<3>()).norm(), 1e-12);
+}
+
+TEST(PredictMotion, MovesWithConstantVelocity) {
+  MotionState state;
+  state.v_world = {1, -2, 0.5};
+  state.omega_body = {0, 0, 0.4};
+  state.T_world_body.linear() = exp_so3(Eigen::Vector3d(0.3, 0, 0));
+  const MotionState next = predict(state, after(state, 0.5), {});
+  EXPECT_LT((next.T_world_body.translation() - Eigen::Vector3d(0.5, -1, 0.25)).norm(), 1e-12);
+  const Eigen::Matrix3d R = state.T_world_body.linear() * exp_so3(Eigen::Vector3d(0, 0, 0.2));
+  EXPECT_LT((next.T_world_body.linear() - R).norm(), 1e-12);
+  EXPECT_EQ(next.v_world, state.v_world);
+  EXPECT_EQ(next.omega_body, state.omega_body);
+  EXPECT_EQ(next.time, after(state, 0.5));
+}
+
+// From rest with 2 m/s² and 0.8 rad/s² for half a second: 1 m/s and 0.4 rad/s, a quarter of a metre and 0.1 rad.
+TEST(PredictMotion, GathersSpeedWithConstantAcceleration) {
+  MotionState state;
+  state.a_world = {0, 2, 0};
+  state.alpha_body = {0.8, 0, 0};
+  const MotionState next = predict(state, after(state, 0.5), {});
+  EXPECT_LT((next.v_world - Eigen::Vector3d(0, 1, 0)).norm(), 1e-12);
+  EXPECT_LT((next.omega_body - Eigen::Vector3d(0.4, 0, 0)).norm(), 1e-12);
+  EXPECT_LT((next.T_world_body.translation() - Eigen::Vector3d(0, 0.25, 0)).norm(), 1e-12);
+  EXPECT_LT((next.T_world_body.linear() - exp_so3(Eigen::Vector3d(0.1, 0, 0))).norm(), 1e-12);
+  EXPECT_EQ(next.a_world, state.a_world);
+  EXPECT_EQ(next.alpha_body, state.alpha_body);
+}
+
+TEST(PredictMotion, HasTheTransitionJacobianAsItsDerivative) {
+  test::RandomGeometry random(kSeed);
+  for (int trial = 0; trial < 5; ++trial) {
+    const MotionState state = test::random_state(random, 0.1);
+    const auto next = [](const MotionState& from) { return predict(from, after(from, 0.3), {}); };
+    const Matrix18d F = transition_jacobian(state, next(state));
+    EXPECT_LT((F - derivative_of(next, state)).cwiseAbs().maxCoeff(), 1e-8) << "seed " << kSeed << ", trial " << trial;
+  }
+}
+
+TEST(PredictMotion, CarriesTheCovariancesByItsDerivative) {
+  test::RandomGeometry random(kSeed);
+  for (int trial = 0; trial < 5; ++trial) {
+    MotionState state = test::random_state(random, 0.1);
+    for (double& value : state.map_offset.cross.reshaped()) value = random.normal(0.1);
+    state.map_offset.covariance = 0.04 * Matrix6d::Identity();
+    const auto next = [](const MotionState& from) { return predict(from, after(from, 0.3), {}); };
+    const Matrix18d F = derivative_of(next, state);
+    const MotionState made = next(state);
+    EXPECT_LT((made.covariance - F * state.covariance * F.transpose()).cwiseAbs().maxCoeff(), 1e-7)
+        << "seed " << kSeed << ", trial " << trial;
+    EXPECT_LT((made.map_offset.cross - F * state.map_offset.cross).cwiseAbs().maxCoeff(), 1e-8);
+    EXPECT_EQ(made.map_offset.covariance, state.map_offset.covariance);
+  }
+}
+
+// The covariance that noise of a kind brings to a state without any, by central differences of what drives it.
+template <typename Function>
+Matrix18d brought(const Matrix6d& noise, const Function& driven_by) {
+  Matrix18x6 G;
+  for (int i = 0; i < 6; ++i) {
+    const Vector6d step = 1e-5 * Vector6d::Unit(i);
+    const MotionState still = driven_by(Vector6d::Zero());
+    G.col(i) = (error_between(still, driven_by(step)) - error_between(still, driven_by(-step))) / 2e-5;
+  }
+  return G * noise * G.transpose();
+}
+
+TEST(PredictMotion, AddsTheAccelerationsByTheirDerivative) {
+  test::RandomGeometry random(kSeed);
+  MotionState state = test::random_state(random, 0.1);
+  state.covariance.setZero();
+  const Matrix6d noise = test::random_covariance<6>(random, 2.0);
+  const auto driven_by = [&](const Vector6d& a) { return test::driven(state, 0.3, a, Vector6d::Zero()); };
+  const MotionState next = predict(state, after(state, 0.3), {noise, Matrix6d::Zero()});
+  EXPECT_LT((next.covariance - brought(noise, driven_by)).cwiseAbs().maxCoeff(), 1e-8) << "seed " << kSeed;
+  EXPECT_GT(next.covariance.diagonal().head(6).minCoeff(), 1e-3);
+}
+
+TEST(PredictMotion, AddsTheJerksByTheirDerivative) {
+  test::RandomGeometry random(kSeed);
+  MotionState state = test::random_state(random, 0.1);
+  state.covariance.setZero();
+  const Matrix6d noise = test::random_covariance<6>(random, 20.0);
+  const auto driven_by = [&](const Vector6d& j) { return test::driven(state, 0.3, Vector6d::Zero(), j); };
+  const MotionState next = predict(state, after(state, 0.3), {Matrix6d::Zero(), noise});
+  EXPECT_LT((next.covariance - brought(noise, driven_by)).cwiseAbs().maxCoeff(), 1e-6) << "seed " << kSeed;
+  EXPECT_GT(next.covariance.diagonal().head(6).minCoeff(), 1e-3);
+}
+
+TEST(PredictMotion, AddsTheJumpsByTheirDerivative) {
+  test::RandomGeometry random(kSeed);
+  MotionState state = test::random_state(random, 0.1);
+  state.covariance.setZero();
+  const Matrix6d noise = test::random_covariance<6>(random, 2.0), none = Matrix6d::Zero();
+  const auto driven_by = [&](const Vector6d& jump) {
+    return test::driven(test::jumped(state, jump), 0.3, Vector6d::Zero(), Vector6d::Zero());
+  };
+  const MotionState next = predict(state, after(state, 0.3), {none, none, noise});
+  EXPECT_LT((next.covariance - brought(noise, driven_by)).cwiseAbs().maxCoeff(), 1e-6) << "seed " << kSeed;
+  EXPECT_GT(next.covariance.diagonal().head(6).minCoeff(), 1e-3);
+}
+
+TEST(PredictMotion, IsTheSumOfItsParts) {
+  test::RandomGeometry random(kSeed);
+  const MotionState state = test::random_state(random, 0.1);
+  const Timestamp time = after(state, 0.3);
+  MotionNoise noise;
+  noise.acceleration = test::random_covariance<6>(random, 2.0);
+  noise.jerk = test::random_covariance<6>(random, 20.0);
+  noise.jump = test::random_covariance<6>(random, 2.0);
+  const MotionState whole = predict(state, time, noise), part = predict_without_noise(state, time);
+  EXPECT_LT(error_between(whole, part).norm(), 1e-12);
+  EXPECT_EQ(part.time, whole.time);
+  const Matrix18d sum = part.covariance + noise_covariance(state, part, noise);
+  EXPECT_LT((sum - whole.covariance).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST(PredictMotion, StaysForAnEarlierTime) {
+  test::RandomGeometry random(kSeed);
+  const MotionState state = test::random_state(random, 0.1);
+  const MotionNoise noise{isotropic_noise(1, 1), isotropic_noise(1, 1)};
+  const MotionState same = predict(state, after(state, -1.0), noise);
+  EXPECT_LT((same.T_world_body.matrix() - state.T_world_body.matrix()).norm(), 1e-12);
+  EXPECT_LT((same.covariance - state.covariance).norm(), 1e-12);
+  EXPECT_EQ(same.time, state.time);
+}
+
+// The covariance of the error of a state that was corrected by `error`, as counted from where it is now.
+Matrix18d recounted(const MotionState& predicted, const Vector18d& error, const Matrix18d& covariance) {
+  const MotionState now = moved_by(predicted, error);
+  Matrix18d J;
+  for (int i = 0; i < 18; ++i) {
+    const Vector18d step = 1e-6 * Vector18d::Unit(i);
+    J.col(i) = (error_between(now, moved_by(predicted, error + step)) -
+                error_between(now, moved_by(predicted, error - step))) /
+               2e-6;
+  }
+  return J * covariance * J.transpose();
+}
+
+// The sightings say that the pose is off by y, with H of the pose's perturbation and covariance R. K = P Hᵀ (H P Hᵀ +
+// R)⁻¹, x = K y, (I - K H) P. The likelihood of H ξ = y + noise: information Hᵀ R⁻¹ H, gradient Hᵀ R⁻¹ y.
+template <int kRows>
+void expect_the_kalman_update(const MotionState& predicted, const Eigen::Matrix<double, kRows, 6>& H_pose,
+                              const Eigen::Matrix<double, kRows, kRows>& R, const Eigen::Matrix<double, kRows, 1>& y) {
+  const Eigen::Matrix<double, kRows, 6> WH = R.inverse() * H_pose;
+  const MotionState state =
+      absorb(predicted, PoseLikelihood{predicted.T_world_body, H_pose.transpose() * WH, WH.transpose() * y});
+
+  Eigen::Matrix<double, kRows, 18> H = Eigen::Matrix<double, kRows, 18>::Zero();
+  H.template leftCols<6>() = H_pose;
+  const Matrix18d& P = predicted.covariance;
+  const Eigen::Matrix<double, 18, kRows> K = P * H.transpose() * (H * P * H.transpose() + R).inverse();
+  const Vector18d x = K * y;
+  const Matrix18d P_after = recounted(predicted, x, P - K * H * P);
+  EXPECT_GT(x.norm(), 1e-2);
+  EXPECT_LT((error_between(predicted, state) - x).norm(), 1e-9);
+  EXPECT_LT((state.covariance - P_after).cwiseAbs().maxCoeff(), 1e-8);
+  EXPECT_EQ(state.covariance, Matrix18d(state.covariance.transpose()));
+  EXPECT_EQ(state.time, predicted.time);
+}
+
+TEST(AbsorbSightings, IsTheKalmanUpdate) {
+  test::RandomGeometry random(kSeed);
+  for (int trial = 0; trial < 5; ++trial) {
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed << ", trial " << trial);
+    const MotionState predicted = test::random_state(random, 0.1);
+    const Matrix6d R = test::random_covariance<6>(random, 0.1);
+    expect_the_kalman_update<6>(predicted, Matrix6d::Identity(), R, draw(random, 0.1, 0.1));
+  }
+}
+
+TEST(AbsorbSightings, IsTheKalmanUpdateWhereTheyDetermineThePoseInPart) {
+  test::RandomGeometry random(kSeed);
+  for (int trial = 0; trial < 5; ++trial) {
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed << ", trial " << trial);
+    const MotionState predicted = test::random_state(random, 0.1);
+    Eigen::Matrix<double, 2, 6> H;
+    for (double& value : H.reshaped()) value = random.normal();
+    const Eigen::Matrix2d R = test::random_covariance<2>(random, 0.1);
+    expect_the_kalman_update<2>(predicted, H, R, Eigen::Vector2d(random.normal(0.2), random.normal(0.2)));
+  }
+}
+
+TEST(AbsorbSightings, LeavesTheStateWhereTheySayNothing) {
+  test::RandomGeometry random(kSeed);
+  const MotionState predicted = test::random_state(random, 0.1);
+  const MotionState state = absorb(predicted, PoseLikelihood{random.pose(), Matrix6d::Zero(), Vector6d::Zero()});
+  EXPECT_LT(error_between(predicted, state).norm(), 1e-12);
+  EXPECT_LT((state.covariance - predicted.covariance).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+// Half a radian from the prediction: what counts is where the likelihood has its greatest value and how wide it is
+// there.
+TEST(AbsorbSightings, TakesOverThePoseOfSightingsThatAreFarSurer) {
+  test::RandomGeometry random(kSeed);
+  MotionState predicted = test::random_state(random, 1e3);
+  PoseLikelihood sightings;
+  sightings.T_world_body = predicted.T_world_body * perturbation(draw(random, 0.5, 0.3));
+  const Matrix6d R = test::random_covariance<6>(random, 0.1);
+  sightings.information = R.inverse();
+  const MotionState state = absorb(predicted, sightings);
+  EXPECT_LT(difference(sightings.T_world_body, state.T_world_body).norm(), 1e-5);
+  EXPECT_LT((state.covariance.topLeftCorner<6, 6>() - R).cwiseAbs().maxCoeff(), 1e-5);
+}
+
+// The same sightings, written about two poses: g' = g - W ξ where the perturbation is small.
+TEST(AbsorbSightings, DoesNotDependOnThePoseThatTheyAreWrittenAbout) {
+  test::RandomGeometry random(kSeed);
+  const MotionState predicted = test::random_state(random, 0.1);
+  const Matrix6d W = test::random_covariance<6>(random, 0.1).inverse();
+  const Vector6d g = W * draw(random, 1e-4, 1e-4), xi = draw(random, 1e-4, 1e-4);
+  const MotionState here = absorb(predicted, PoseLikelihood{predicted.T_world_body, W, g});
+  const MotionState there = absorb(predicted, PoseLikelihood{predicted.T_world_body * perturbation(xi), W, g - W * xi});
+  EXPECT_GT(error_between(predicted, here).norm(), 1e-4);
+  EXPECT_LT(error_between(here, there).norm(), 1e-6);
+}
+
+// A map that lies displaced by an offset (translation, rotation vector about the centre) shows a camera at this pose.
+Eigen::Isometry3d shown_by(const MapOffset& offset, const Vector6d& by, const Eigen::Isometry3d& T_world_camera) {
+  Eigen::Isometry3d T_true_map = Eigen::Isometry3d::Identity();  // p_true = T_true_map * p_map
+  T_true_map.linear() = exp_so3(by.tail<3>());
+  T_true_map.translation() = offset.centre_world + by.head<3>() - T_true_map.linear() * offset.centre_world;
+  return T_true_map.inverse() * T_world_camera;
+}
+
+// How the pose in the map moves with the errors of state and offset, stacked.
+Eigen::Matrix<double, 6, 24> jacobian_in_map(const MotionState& state) {
+  Eigen::Matrix<double, 6, 24> H = Eigen::Matrix<double, 6, 24>::Zero();
+  H.leftCols<6>().setIdentity();
+  for (int i = 0; i < 6; ++i) {
+    const Vector6d step = 1e-6 * Vector6d::Unit(i);
+    H.col(18 + i) = (difference(state.T_world_body, shown_by(state.map_offset, step, state.T_world_body)) -
+                     difference(state.T_world_body, shown_by(state.map_offset, -step, state.T_world_body))) /
+                    2e-6;
+  }
+  return H;
+}
+
+MotionState random_state_with_offset(test::RandomGeometry& random, Matrix24d& P) {
+  MotionState state = test::random_state(random, 0.1);
+  P = test::random_covariance<24>(random, 0.1);
+  state.covariance = P.topLeftCorner<18, 18>();
+  state.map_offset = {random.vector(), P.bottomRightCorner<6, 6>(), P.topRightCorner<18, 6>()};
+  return state;
+}
+
+TEST(MapOffset, AddsToTheCovarianceOfThePoseInTheMap) {
+  test::RandomGeometry random(kSeed);
+  Matrix24d P;
+  const MotionState state = random_state_with_offset(random, P);
+  const Eigen::Matrix<double, 6, 24> H = jacobian_in_map(state);
+  EXPECT_LT((covariance_in_map(state) - H * P * H.transpose()).cwiseAbs().maxCoeff(), 1e-8) << "seed " << kSeed;
+  MotionState alone = state;
+  alone.map_offset = {};
+  EXPECT_EQ(covariance_in_map(alone), Matrix6d(state.covariance.topLeftCorner<6, 6>()));
+}
+
+// Schmidt's filter over the stack of state and offset: K = P Hᵀ (H P Hᵀ + R)⁻¹ with the offset's rows zeroed, then
+// Joseph's form. The innovation is small, so that what is counted from the new pose is the same.
+TEST(AbsorbSightings, ConsidersTheMapOffset) {
+  test::RandomGeometry random(kSeed);
+  for (int trial = 0; trial < 5; ++trial) {
+    Matrix24d P;
+    const MotionState predicted = random_state_with_offset(random, P);
+    const Matrix6d R = test::random_covariance<6>(random, 0.1);
+    const Vector6d y = draw(random, 1e-4, 1e-4);
+    const PoseLikelihood sightings{predicted.T_world_body, R.inverse(), R.inverse() * y};
+    const MotionState state = absorb(predicted, sightings);
+
+    const Eigen::Matrix<double, 6, 24> H = jacobian_in_map(predicted);
+    Eigen::Matrix<double, 24, 6> K = P * H.transpose() * (H * P * H.transpose() + R).inverse();
+    K.bottomRows<6>().setZero();
+    const Matrix24d rest = Matrix24d::Identity() - K * H;
+    const Matrix24d P_after = rest * P * rest.transpose() + K * R * K.transpose();
+    const Vector18d x = K.topRows<18>() * y;
+    EXPECT_LT((error_between(predicted, state) - x).norm(), 1e-4 * x.norm()) << "seed " << kSeed << ", trial " << trial;
+    EXPECT_LT((state.covariance - P_after.topLeftCorner<18, 18>()).cwiseAbs().maxCoeff(), 1e-4);
+    EXPECT_LT((state.map_offset.cross - P_after.topRightCorner<18, 6>()).cwiseAbs().maxCoeff(), 1e-4);
+    EXPECT_EQ(state.map_offset.covariance, predicted.map_offset.covariance);
+    EXPECT_EQ(state.map_offset.centre_world, predicted.map_offset.centre_world);
+  }
+}
+
+// log N(y; 0, P + R) of the innovation y, less its constant.
+double log_density(const Vector6d& y, const Matrix6d& S) {
+  return -0.5 * (y.dot(S.inverse() * y) + std::log(S.determinant()));
+}
+
+TEST(LogEvidence, IsTheDensityOfTheInnovation) {
+  test::RandomGeometry random(kSeed);
+  for (int trial = 0; trial < 5; ++trial) {
+    Matrix24d P;
+    const MotionState one = random_state_with_offset(random, P);
+    MotionState other = one;
+    other.covariance = test::random_covariance<18>(random, 0.1);
+    other.map_offset = {};
+    other.T_world_body = one.T_world_body * perturbation(draw(random, 0.3, 0.0));
+    const Matrix6d R = test::random_covariance<6>(random, 0.1);
+    const Vector6d y = draw(random, 0.3, 0.3);
+    const double evidence = log_evidence(one, {one.T_world_body, R.inverse(), R.inverse() * y}) -
+                            log_evidence(other, {one.T_world_body, R.inverse(), R.inverse() * y});
+    const Vector6d y_other = y + difference(other.T_world_body, one.T_world_body);
+    const double expected =
+        log_density(y, covariance_in_map(one) + R) - log_density(y_other, covariance_in_map(other) + R);
+    EXPECT_NEAR(evidence, expected, 1e-7 * std::abs(expected)) << "seed " << kSeed << ", trial " << trial;
+  }
+}
+
+// Two of six directions measured: the density is that of the two.
+TEST(LogEvidence, CountsOnlyWhatTheSightingsMeasure) {
+  test::RandomGeometry random(kSeed);
+  for (int trial = 0; trial < 5; ++trial) {
+    MotionState predicted = test::random_state(random, 0.1);
+    Eigen::Matrix<double, 2, 6> H;
+    for (double& value : H.reshaped()) value = random.normal();
+    const Eigen::Matrix2d W = test::random_covariance<2>(random, 0.1).inverse();
+    const Eigen::Vector2d y(random.normal(0.3), random.normal(0.3));
+    const PoseLikelihood sightings{predicted.T_world_body, H.transpose() * W * H, H.transpose() * W * y};
+    double evidence[2], expected[2];
+    for (int k = 0; k < 2; ++k) {
+      const Eigen::Matrix2d S = H * predicted.covariance.topLeftCorner<6, 6>() * H.transpose() + W.inverse();
+      evidence[k] = log_evidence(predicted, sightings);
+      expected[k] = -0.5 * (y.dot(S.inverse() * y) + std::log(S.determinant()));
+      predicted.covariance *= 4;
+    }
+    EXPECT_NEAR(evidence[1] - evidence[0], expected[1] - expected[0], 1e-7) << "seed " << kSeed << ", trial " << trial;
+  }
+}
+
+// z = pose + noise with H = [I 0]: K = P Hᵀ (H P Hᵀ + R)⁻¹, x + K y, (I - K H) P.
+TEST(AbsorbPose, IsTheKalmanUpdate) {
+  test::RandomGeometry random(kSeed);
+  for (int trial = 0; trial < 5; ++trial) {
+    const MotionState predicted = test::random_state(random, 0.1);
+    const Matrix6d R = test::random_covariance<6>(random, 0.1);
+    const Vector6d y = draw(random, 0.1, 0.1);
+    const Matrix18d& P = predicted.covariance;
+    const Matrix18x6 K = P.leftCols<6>() * (P.topLeftCorner<6, 6>() + R).inverse();
+    const Matrix18d P_after = P - K * P.topRows<6>();
+    const Vector18d x = K * y;
+    const MotionState state =
+        absorb(predicted, predicted.T_world_body * perturbation(x.head<6>()), P_after.topLeftCorner<6, 6>());
+    EXPECT_LT((error_between(predicted, state) - x).norm(), 1e-8) << "seed " << kSeed << ", trial " << trial;
+    EXPECT_LT((state.covariance - P_after).cwiseAbs().maxCoeff(), 1e-9);
+    EXPECT_EQ(state.covariance, Matrix18d(state.covariance.transpose()));
+  }
+}
+
+// From 1 to 2 m/s and 0 to 0.3 rad/s within 0.1 s: mean squares of 2/3 (10 m/s²)² and 2/3 (3 rad/s²)².
+TEST(AdaptMotionNoise, BlendsInTheChangeOfVelocity) {
+  MotionState before, now;
+  before.v_world = {1, 0, 0};
+  now.v_world = {2, 0, 0};
+  now.omega_body = {0, 0.3, 0};
+  now.time = after(before, 0.1);
+  const MotionNoise noise = adapt({isotropic_noise(4, 2), isotropic_noise(5, 6)}, before, now, 0.25);
+  const Matrix6d expected = isotropic_noise(std::sqrt(0.75 * 16 + 0.25 * 100 * 2 / 3),  //
+                                            std::sqrt(0.75 * 4 + 0.25 * 9 * 2 / 3));
+  EXPECT_LT((noise.acceleration - expected).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_EQ(noise.jerk, isotropic_noise(5, 6));
+}
+
+TEST(AdaptMotionNoise, CalmsDownButNotToZero) {
+  const MotionNoise noise{isotropic_noise(4, 2), Matrix6d::Zero()};
+  MotionState before, now;
+  now.time = after(before, 0.1);
+  EXPECT_LT((adapt(noise, before, now, 0.25).acceleration - 0.75 * noise.acceleration).norm(), 1e-9);
+  EXPECT_LT((adapt(noise, before, now, 1.0).acceleration - 1e-4 * noise.acceleration).norm(), 1e-9);
+  now.time = before.time;
+  now.v_world = {5, 0, 0};
+  EXPECT_EQ(adapt(noise, before, now, 0.25).acceleration, noise.acceleration);
+}
+
+TEST(RestingState, KnowsNothingOfTheVelocities) {
+  test::RandomGeometry random(kSeed);
+  const Eigen::Isometry3d T = random.pose();
+  const Matrix6d P = 0.5 * Matrix6d::Identity();
+  const MotionState state = resting_state(Timestamp(from_seconds(3)), T, P, 2.0, 0.3);
+  EXPECT_EQ(state.T_world_body.matrix(), T.matrix());
+  EXPECT_EQ(to_seconds(state.time.time_since_epoch()), 3.0);
+  EXPECT_TRUE(state.v_world.isZero() && state.omega_body.isZero());
+  EXPECT_TRUE(state.a_world.isZero() && state.alpha_body.isZero());
+  Vector18d variances;
+  variances << Vector6d::Constant(0.5), Eigen::Vector3d::Constant(4), Eigen::Vector3d::Constant(0.09), Vector6d::Zero();
+  EXPECT_LT((state.covariance - Matrix18d(variances.asDiagonal())).norm(), 1e-12);
+}
+
+}  // namespace
+}  // namespace alidade
