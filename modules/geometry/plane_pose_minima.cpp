@@ -4,40 +4,18 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
-#include <stdexcept>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
 #include "geometry/rotation.h"
 #include "geometry/rotation_descent.h"
+#include "geometry/rotation_spread.h"
 
 namespace alidade {
 namespace {
 
 using Constraints = std::span<const PlaneConstraint>;
-
-void require_valid(Constraints constraints) {
-  for (const PlaneConstraint& constraint : constraints) {
-    if (!(std::abs(constraint.plane_world.normal.squaredNorm() - 1.0) <= 1e-6)) {
-      throw std::invalid_argument("all_minima: a plane's normal is not of unit length");
-    }
-    if (!(constraint.weight > 0)) throw std::invalid_argument("all_minima: a weight must be > 0");
-  }
-}
-
-// The i-th of n rotations that cover SO(3) evenly. Source: Alexa, Super-Fibonacci Spirals, CVPR 2022.
-Eigen::Matrix3d spread_rotation(int i, int n) {
-  constexpr double kPsi = 1.533751168755204288118041;
-  const double s = i + 0.5;
-  const double t = s / n;
-  const double alpha = 2.0 * std::numbers::pi * s / std::numbers::sqrt2;
-  const double beta = 2.0 * std::numbers::pi * s / kPsi;
-  const double r = std::sqrt(t), q = std::sqrt(1.0 - t);
-  return Eigen::Quaterniond(q * std::cos(beta), r * std::sin(alpha), r * std::cos(alpha), q * std::sin(beta))
-      .toRotationMatrix();
-}
 
 // Minima of a rotation cost, found from here and there.
 class MinimaSearch {
@@ -131,7 +109,7 @@ bool is_sharp(const RotationCost& cost, const Eigen::Matrix3d& R, const PlaneJud
 }  // namespace
 
 std::vector<PlanePose> all_minima(Constraints constraints, const PlaneMinimaOptions& options) {
-  require_valid(constraints);
+  require_planes(constraints);
   if (constraints.empty()) return {};
   const RotationCost cost = eliminate_translation(sum_planes(constraints));
   MinimaSearch search(cost, options.same_rotation_rad);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "geometry/plane_sums.h"
 
+#include <cmath>
+#include <stdexcept>
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
@@ -77,6 +80,15 @@ PlaneGram sum_of_point(std::span<const PlaneConstraint> constraints) {
 }
 
 }  // namespace
+
+void require_planes(std::span<const PlaneConstraint> constraints) {
+  for (const PlaneConstraint& constraint : constraints) {
+    if (!(std::abs(constraint.plane_world.normal.squaredNorm() - 1.0) <= 1e-6)) {
+      throw std::invalid_argument("a plane's normal is not of unit length");
+    }
+    if (!(constraint.weight > 0)) throw std::invalid_argument("a weight must be > 0");
+  }
+}
 
 void PlaneSums::add(const Eigen::Vector3d& p, const PlaneGram& gram, double sign) {
   Eigen::Matrix<double, 6, 1> normals;

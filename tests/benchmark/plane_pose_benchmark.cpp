@@ -10,6 +10,7 @@
 
 #include "geometry/plane_pose.h"
 #include "geometry/plane_pose_minima.h"
+#include "geometry/plane_pose_search.h"
 #include "geometry/robust_plane_pose.h"
 #include "geometry/rotation_descent.h"
 #include "tests/geometry/random_planes.h"
@@ -214,6 +215,14 @@ void global_start(benchmark::State& run) {
   }
 }
 BENCHMARK(global_start)->Arg(32)->Unit(benchmark::kMicrosecond);
+
+// The pose without a start where a fifth of the planes is wrong.
+void robust_global_start(benchmark::State& run) {
+  const auto problems = make_problems(static_cast<int>(run.range(0)), kWrong);
+  std::size_t i = 0;
+  for (auto _ : run) benchmark::DoNotOptimize(search_pose(problems[i++ % kProblems].constraints));
+}
+BENCHMARK(robust_global_start)->Arg(32)->Unit(benchmark::kMicrosecond);
 
 // A plane more and a plane less.
 void rank_update(benchmark::State& run) {
