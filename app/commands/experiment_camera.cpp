@@ -6,13 +6,11 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include "app/commands/verbs.h"
 #include "app/experiments/camera_experiment.h"
 #include "app/experiments/experiment_report.h"
 #include "app/experiments/recording_experiment.h"
-#include "app/result_directory.h"
 #include "io/map_file.h"
 
 namespace alidade {
@@ -80,11 +78,9 @@ class ExperimentCameraCommand : public Command {
       if (!recording.empty()) take(part.name, [&] { return part.run(recording, experiment); });
     }
     record.object = points_.empty() ? "a generated object of 453 points" : points_.filename().string();
-    record.runs = runs_;
+    record.count = runs_;
     record.interrupted = context.stop.stop_requested();
-    context.publish(summary_of(record));
-    if (!context.output.empty()) write(record, context);
-    return record.interrupted ? ExitCode::Interrupted : ExitCode::Success;
+    return finish(record, "experiment camera", options_.to_yaml(), context);
   }
 
  private:
@@ -97,14 +93,6 @@ class ExperimentCameraCommand : public Command {
     throw InputError("--only " + part.name, 0, "needs a recording", fmt::format("give it with {} FOLDER", part.flag));
   }
 
-  static void tell(const ExperimentSection& section, const RunContext& context) {
-    for (const ReportTable& table : section.tables) {
-      for (const std::string& line : lines_of(table)) context.tell(line);
-      context.tell("");
-    }
-    for (const std::string& remark : section.remarks) context.tell(remark);
-  }
-
   std::vector<Eigen::Vector3d> read_object() const {
     std::vector<Eigen::Vector3d> points;
     for (const MapPoint& p : read_map_ply(points_).points) points.push_back(p.p_world);
@@ -114,13 +102,6 @@ class ExperimentCameraCommand : public Command {
                        "give the PLY of an object");
     }
     return fitted_to(0.15, std::move(points));
-  }
-
-  void write(const ExperimentRecord& record, const RunContext& context) const {
-    ResultDirectory directory(context.output, "experiment camera");
-    write_experiment(record, context.arguments, options_.to_yaml(), directory);
-    directory.commit(summary_of(record));
-    context.tell(fmt::format("written to {}", context.output.string()));
   }
 
   std::filesystem::path points_;

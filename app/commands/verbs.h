@@ -17,6 +17,7 @@ Verb map_verb();
 Verb simulate_camera_verb();
 Verb simulate_body_verb();
 Verb experiment_camera_verb();
+Verb experiment_body_verb();
 Verb evaluate_verb();
 Verb view_verb();
 

@@ -1,24 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/experiments/camera_comparison.h"
 
-#include <ctime>
 #include <mutex>
 #include <numbers>
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
+#include "app/experiments/cpu_clock.h"
+
 namespace alidade {
 namespace {
 
 constexpr int kUnscoredRuns = 10;
 constexpr unsigned kUnscored = 1'000'000;  // the first of their numbers, far from those of the scored
-
-double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 const std::vector<std::string> kMethodOrder{"EPnP",           "EPnP + LM",        "SQPnP",
                                             "paper's filter", "RANSAC-EPnP + LM", "ours, causal",

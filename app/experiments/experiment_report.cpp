@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "app/result_directory.h"
 #include "core/errors.h"
 #include "io/image_files.h"
 #include "view/renderer.h"
@@ -23,17 +24,6 @@ std::optional<cv::Mat> drawn(const ExperimentScene& scene, Report& report) {
   }
 }
 
-}  // namespace
-
-nlohmann::json summary_of(const ExperimentRecord& record) {
-  nlohmann::json summary;
-  summary["object"] = record.object;
-  summary["runs"] = record.runs;
-  summary["interrupted"] = record.interrupted;
-  for (const ExperimentSection& section : record.sections) summary[section.name] = section.summary;
-  return summary;
-}
-
 void write_experiment(const ExperimentRecord& record, const std::vector<std::string>& arguments,
                       const std::string& options, const ResultDirectory& directory) {
   Report report;
@@ -41,7 +31,7 @@ void write_experiment(const ExperimentRecord& record, const std::vector<std::str
   report.arguments = arguments;
   report.options = options;
   report.summary = {{"object", record.object, "", Verdict::None, ""},
-                    {"runs", std::to_string(record.runs), "", Verdict::None, "with different noise"}};
+                    {record.unit, std::to_string(record.count), "", Verdict::None, "of each condition"}};
   if (record.interrupted) report.warnings.push_back("interrupted: the parts that had not ended are missing");
   for (const ExperimentSection& section : record.sections) {
     ReportSection shown{section.title, section.remarks, {}, {}, section.tables};
@@ -67,6 +57,38 @@ void write_experiment(const ExperimentRecord& record, const std::vector<std::str
   report.links.push_back({"summary.json", "all figures"});
   directory.write_text("options.yaml", options);
   write_report(directory.path("report.html"), report);
+}
+
+}  // namespace
+
+nlohmann::json summary_of(const ExperimentRecord& record) {
+  nlohmann::json summary;
+  summary["object"] = record.object;
+  summary[record.unit] = record.count;
+  summary["interrupted"] = record.interrupted;
+  for (const ExperimentSection& section : record.sections) summary[section.name] = section.summary;
+  return summary;
+}
+
+void tell(const ExperimentSection& section, const RunContext& context) {
+  for (const ReportTable& table : section.tables) {
+    for (const std::string& line : lines_of(table)) context.tell(line);
+    context.tell("");
+  }
+  for (const std::string& remark : section.remarks) context.tell(remark);
+}
+
+ExitCode finish(const ExperimentRecord& record, const std::string& verb, const std::string& options,
+                const RunContext& context) {
+  const nlohmann::json summary = summary_of(record);
+  context.publish(summary);
+  if (!context.output.empty()) {
+    ResultDirectory directory(context.output, verb);
+    write_experiment(record, context.arguments, options, directory);
+    directory.commit(summary);
+    context.tell(fmt::format("written to {}", context.output.string()));
+  }
+  return record.interrupted ? ExitCode::Interrupted : ExitCode::Success;
 }
 
 }  // namespace alidade
