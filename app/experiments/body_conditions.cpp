@@ -52,7 +52,7 @@ ExperimentSection body_accuracy(const ExperimentContext& context) {
   section.tables.push_back(score_table("Clean data, twelve detectors", "body", clean_scores));
   section.summary["clean"] = summary_of(clean_scores);
 
-  Plot plot{"Clean data", "detectors", "position RMS (mm)", {}, false, true};
+  Plot plot{"Clean data", "detectors", "position RMS (mm)", {}, false, false};
   for (int markers : {3, 4}) {
     std::vector<BodyCell> cells;
     std::vector<double> detectors;
@@ -91,7 +91,7 @@ ExperimentSection body_wrong_ids(const ExperimentContext& context) {
 ExperimentSection body_occlusion(const ExperimentContext& context) {
   std::vector<BodyCell> cells;
   std::vector<double> x;
-  for (double share : {0.0, 0.2, 0.4, 0.6, 0.8}) {
+  for (double share : {0.0, 0.2, 0.4, 0.6}) {
     cells.push_back({percent(share), {}});
     cells.back().scene.occluded = share;
     x.push_back(100 * share);

@@ -15,7 +15,7 @@ ExperimentSection body_accuracy(const ExperimentContext& context);
 /// Wrong ids, 0 to 45 %.
 ExperimentSection body_wrong_ids(const ExperimentContext& context);
 
-/// Occlusion in bursts, 0 to 80 % of readings; padding against a prior, forward against backward.
+/// Occlusion in bursts, 0 to 60 % of readings; padding against a prior, forward against backward.
 ExperimentSection body_occlusion(const ExperimentContext& context);
 
 /// Derivatives, exact recovery, and the agreement of the paper's solver, ours and Ceres.

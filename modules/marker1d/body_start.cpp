@@ -5,26 +5,58 @@
 #include <cmath>
 #include <map>
 
+#include <Eigen/QR>
+
+#include "core/find_by_id.h"
 #include "geometry/plane_pose_minima.h"
+#include "geometry/plane_pose_search.h"
 
 namespace alidade {
 namespace {
 
-// What a reading says of its marker's place before anything is known: its plane, and how far off the marker may be from
-// it, at the range of the world's origin. The weights only balance the planes; update_body has the true ones.
+// Where planes nearly meet: of all of a small body's markers, whatever they are named.
+Eigen::Vector3d middle_of(std::span<const Plane> planes) {
+  Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d b = Eigen::Vector3d::Zero();
+  for (const Plane& plane : planes) {
+    A += plane.normal * plane.normal.transpose();
+    b += plane.normal * plane.offset;
+  }
+  return A.completeOrthogonalDecomposition().solve(b);
+}
+
+// What readings say of their markers' places before anything is known: planes about the middle of all, each as exact as
+// its reading is at that range.
 std::vector<PlaneConstraint> constraints_of(const DetectorArray& detectors, const RigidBody& body,
-                                            std::span<const LineReading> readings) {
+                                            std::span<const LineReading> readings, double variance_factor) {
+  std::vector<Plane> planes;
+  for (const LineReading& r : readings) {
+    if (const auto plane = plane_of(detectors.at(r.detector).detector, r.value)) planes.push_back(*plane);
+  }
+  const Eigen::Vector3d middle = middle_of(planes);
   std::map<int, std::vector<PlaneConstraint>> of_marker;  // kept together: they are summed so
   for (const LineReading& r : readings) {
     const LineDetector& detector = detectors.at(r.detector).detector;
-    const auto plane = plane_of(detector, r.value);
-    const auto marker =
-        std::find_if(body.markers.begin(), body.markers.end(), [&](const BodyMarker& m) { return m.id == r.marker; });
-    if (plane && marker != body.markers.end()) of_marker[r.marker].push_back({marker->p_body, *plane, 1.0});
+    const BodyMarker* marker = find_by_id<BodyMarker>(body.markers, r.marker);
+    const auto plane = plane_near(detector, r.value, middle);
+    const auto projection = project(detector, middle);
+    if (marker == nullptr || !plane || !projection) continue;
+    const double sigma = r.sigma > 0 ? r.sigma : detector.sigma;
+    const double weight = projection->J_value_point.squaredNorm() / (variance_factor * sigma * sigma);
+    of_marker[r.marker].push_back({marker->p_body, *plane, weight});
   }
   std::vector<PlaneConstraint> constraints;
-  for (const auto& [id, planes] : of_marker) constraints.insert(constraints.end(), planes.begin(), planes.end());
+  for (const auto& [id, of_one] : of_marker) constraints.insert(constraints.end(), of_one.begin(), of_one.end());
   return constraints;
+}
+
+std::vector<Eigen::Isometry3d> determined_minima(std::span<const PlaneConstraint> constraints) {
+  std::vector<Eigen::Isometry3d> poses;
+  if (constraints.size() < 6) return poses;
+  for (const PlanePose& minimum : all_minima(constraints)) {
+    if (determined_directions(minimum.information) == 6) poses.push_back(minimum.T_world_body);
+  }
+  return poses;
 }
 
 MotionState anywhere_near(const Eigen::Isometry3d& T_world_body, Timestamp time, const BodyStartOptions& options) {
@@ -49,13 +81,7 @@ void keep_probable(std::vector<BodyCandidate>& candidates, double least_log_odds
 
 std::vector<Eigen::Isometry3d> poses_by_planes(const DetectorArray& detectors, const RigidBody& body,
                                                std::span<const LineReading> readings) {
-  const std::vector<PlaneConstraint> constraints = constraints_of(detectors, body, readings);
-  std::vector<Eigen::Isometry3d> poses;
-  if (constraints.size() < 6) return poses;
-  for (const PlanePose& minimum : all_minima(constraints)) {
-    if (determined_directions(minimum.information) == 6) poses.push_back(minimum.T_world_body);
-  }
-  return poses;
+  return determined_minima(constraints_of(detectors, body, readings, 1.0));
 }
 
 std::vector<BodyCandidate> start_body(const DetectorArray& detectors, const RigidBody& body,
@@ -63,16 +89,26 @@ std::vector<BodyCandidate> start_body(const DetectorArray& detectors, const Rigi
                                       const BodyStartOptions& options) {
   std::vector<BodyCandidate> candidates;
   const MotionProcess known_motion{{MotionNoise{}, 1.0}};
-  const double least = std::max(6.0, options.least_share * static_cast<double>(readings.size()));
-  for (const Eigen::Isometry3d& T_world_body : poses_by_planes(detectors, body, readings)) {
+  const int count = static_cast<int>(readings.size());
+  const auto try_from = [&](const Eigen::Isometry3d& T_world_body) {
     BodyUpdate update = update_body(BodyReadings(detectors, body, readings, variance_factor),
                                     anywhere_near(T_world_body, time, options), time, known_motion, options.update);
-    if (update.inlier_count < least) continue;
-    if (determined_directions(update.readings.information.topLeftCorner<6, 6>()) < 6) continue;
+    const double least = update.inlier_count == count ? 6 : std::max(10.0, options.least_share * count);
+    if (update.inlier_count < least) return;
+    if (determined_directions(update.readings.information.topLeftCorner<6, 6>()) < 6) return;
     candidates.push_back(
         {std::move(update.motion.state), update.log_evidence, std::move(update.is_inlier), update.inlier_count});
-  }
+  };
+  const std::vector<PlaneConstraint> constraints = constraints_of(detectors, body, readings, variance_factor);
+  for (const Eigen::Isometry3d& T : determined_minima(constraints)) try_from(T);
   keep_probable(candidates, options.least_log_odds);
+  const bool is_explained = !candidates.empty() && candidates.front().inlier_count == count;
+  if (is_explained || constraints.size() < 6) return candidates;
+  const PlaneSearch search = search_pose(constraints);  // some are wrong
+  for (const RobustPlanePose& found : search.candidates) try_from(found.pose.T_world_body);
+  keep_probable(candidates, options.least_log_odds);
+  // The one pose left explains a part of the readings; others may explain as many.
+  if (candidates.size() == 1 && search.verdict != PlaneVerdict::Certain) candidates.clear();
   return candidates;
 }
 

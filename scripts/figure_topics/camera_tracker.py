@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """camera-tracker: the paper's experiments re-created, and our filter beside its opponents, by `alidade experiment`."""
 
-import json
 import math
 
-from figure_topics.bench import ROOT, summary
-from figure_topics.figure import Fact, Failed, Figure, Section, Skipped
+from figure_topics.bench import summary
+from figure_topics.benchmark import least_times
+from figure_topics.figure import Fact, Figure, Section, Skipped
 
 RUNS = 100
 OURS = {"causal": "ours, causal", "lag-3": "ours, lag 3", "smoothed": "ours, smoothed"}
@@ -180,18 +180,9 @@ CLAIMS_SECTION = Section("claims", [
 
 
 def measure_speed(bench):
-    bench.run(ROOT / "scripts" / "build", "release", "alidade_benchmark")
-    run = bench.run(ROOT / "build" / "release" / "tests" / "benchmark" / "alidade_benchmark",
-                    "--benchmark_format=json", "--benchmark_repetitions=5")
-    least = {}
-    for row in json.loads(run.stdout)["benchmarks"]:
-        if row["run_type"] == "iteration":
-            least[row["run_name"]] = min(row["cpu_time"], least.get(row["run_name"], float("inf")))
-    try:
-        for name in ("EPnP", "SQPnP", "EPnP+LM"):
-            yield f"speed/step-to-{name.lower().replace('+', '-')}", least["filter_step"] / least[name]
-    except KeyError as missing:
-        raise Failed(f"the benchmark has no {missing}: {', '.join(least)}") from missing
+    least = least_times(bench, "alidade_benchmark")
+    for name in ("EPnP", "SQPnP", "EPnP+LM"):
+        yield f"speed/step-to-{name.lower().replace('+', '-')}", least["filter_step"] / least[name]
 
 
 SPEED = Section("speed", [
