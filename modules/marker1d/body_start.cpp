@@ -5,11 +5,13 @@
 #include <cmath>
 #include <map>
 
+#include <Eigen/Cholesky>
 #include <Eigen/QR>
 
 #include "core/find_by_id.h"
 #include "geometry/plane_pose_minima.h"
 #include "geometry/plane_pose_search.h"
+#include "geometry/plane_valley.h"
 
 namespace alidade {
 namespace {
@@ -50,17 +52,24 @@ std::vector<PlaneConstraint> constraints_of(const DetectorArray& detectors, cons
   return constraints;
 }
 
-std::vector<Eigen::Isometry3d> determined_minima(std::span<const PlaneConstraint> constraints) {
-  std::vector<Eigen::Isometry3d> poses;
-  if (constraints.size() < 6) return poses;
-  for (const PlanePose& minimum : all_minima(constraints)) {
-    if (determined_directions(minimum.information) == 6) poses.push_back(minimum.T_world_body);
-  }
-  return poses;
+std::vector<PlanePose> minima_of(std::span<const PlaneConstraint> constraints) {
+  return constraints.size() < 6 ? std::vector<PlanePose>() : all_minima(constraints);
+}
+
+bool is_determined(const PlanePose& minimum) {
+  return determined_directions(minimum.information) == 6;
 }
 
 MotionState anywhere_near(const Eigen::Isometry3d& T_world_body, Timestamp time, const BodyStartOptions& options) {
   return resting_state(time, T_world_body, isotropic_noise(1.0, 1.0), options.speed_m_s, options.rate_rad_s);
+}
+
+// Its evidence is that of an update from anywhere near: what fits, and how small a part of the prior the valley is.
+BodyCandidate somewhere_in(const PlaneValley& valley, double chi2, std::size_t count, Timestamp time,
+                           const BodyStartOptions& options) {
+  const double log_volume = valley.covariance.llt().matrixL().toDenseMatrix().diagonal().array().log().sum();
+  return {resting_state(time, valley.T_world_body, valley.covariance, options.speed_m_s, options.rate_rad_s),
+          log_volume - chi2 / 2, std::vector<bool>(count, true), static_cast<int>(count)};
 }
 
 void keep_probable(std::vector<BodyCandidate>& candidates, double least_log_odds) {
@@ -81,7 +90,11 @@ void keep_probable(std::vector<BodyCandidate>& candidates, double least_log_odds
 
 std::vector<Eigen::Isometry3d> poses_by_planes(const DetectorArray& detectors, const RigidBody& body,
                                                std::span<const LineReading> readings) {
-  return determined_minima(constraints_of(detectors, body, readings, 1.0));
+  std::vector<Eigen::Isometry3d> poses;
+  for (const PlanePose& minimum : minima_of(constraints_of(detectors, body, readings, 1.0))) {
+    if (is_determined(minimum)) poses.push_back(minimum.T_world_body);
+  }
+  return poses;
 }
 
 std::vector<BodyCandidate> start_body(const DetectorArray& detectors, const RigidBody& body,
@@ -100,7 +113,15 @@ std::vector<BodyCandidate> start_body(const DetectorArray& detectors, const Rigi
         {std::move(update.motion.state), update.log_evidence, std::move(update.is_inlier), update.inlier_count});
   };
   const std::vector<PlaneConstraint> constraints = constraints_of(detectors, body, readings, variance_factor);
-  for (const Eigen::Isometry3d& T : determined_minima(constraints)) try_from(T);
+  for (const PlanePose& minimum : minima_of(constraints)) {
+    if (is_determined(minimum)) {
+      try_from(minimum.T_world_body);
+    } else if (minimum.chi2 < options.update.gate_chi2) {
+      if (const auto valley = follow_valley(constraints, minimum)) {
+        candidates.push_back(somewhere_in(*valley, minimum.chi2, readings.size(), time, options));
+      }
+    }
+  }
   keep_probable(candidates, options.least_log_odds);
   const bool is_explained = !candidates.empty() && candidates.front().inlier_count == count;
   if (is_explained || constraints.size() < 6) return candidates;
