@@ -120,7 +120,7 @@ TEST(PredictMotion, AddsTheAccelerationsByTheirDerivative) {
   test::RandomGeometry random(kSeed);
   MotionState state = test::random_state(random, 0.1);
   state.covariance.setZero();
-  const Matrix6d noise = test::random_covariance<6>(random, 2.0);
+  const Matrix6d noise = test::random_covariance(random, 6, 2.0);
   const auto driven_by = [&](const Vector6d& a) { return test::driven(state, 0.3, a, Vector6d::Zero()); };
   const MotionState next = predict(state, after(state, 0.3), {noise, Matrix6d::Zero()});
   EXPECT_LT((next.covariance - brought(noise, driven_by)).cwiseAbs().maxCoeff(), 1e-8) << "seed " << kSeed;
@@ -131,7 +131,7 @@ TEST(PredictMotion, AddsTheJerksByTheirDerivative) {
   test::RandomGeometry random(kSeed);
   MotionState state = test::random_state(random, 0.1);
   state.covariance.setZero();
-  const Matrix6d noise = test::random_covariance<6>(random, 20.0);
+  const Matrix6d noise = test::random_covariance(random, 6, 20.0);
   const auto driven_by = [&](const Vector6d& j) { return test::driven(state, 0.3, Vector6d::Zero(), j); };
   const MotionState next = predict(state, after(state, 0.3), {Matrix6d::Zero(), noise});
   EXPECT_LT((next.covariance - brought(noise, driven_by)).cwiseAbs().maxCoeff(), 1e-6) << "seed " << kSeed;
@@ -142,7 +142,7 @@ TEST(PredictMotion, AddsTheJumpsByTheirDerivative) {
   test::RandomGeometry random(kSeed);
   MotionState state = test::random_state(random, 0.1);
   state.covariance.setZero();
-  const Matrix6d noise = test::random_covariance<6>(random, 2.0), none = Matrix6d::Zero();
+  const Matrix6d noise = test::random_covariance(random, 6, 2.0), none = Matrix6d::Zero();
   const auto driven_by = [&](const Vector6d& jump) {
     return test::driven(test::jumped(state, jump), 0.3, Vector6d::Zero(), Vector6d::Zero());
   };
@@ -156,9 +156,9 @@ TEST(PredictMotion, IsTheSumOfItsParts) {
   const MotionState state = test::random_state(random, 0.1);
   const Timestamp time = after(state, 0.3);
   MotionNoise noise;
-  noise.acceleration = test::random_covariance<6>(random, 2.0);
-  noise.jerk = test::random_covariance<6>(random, 20.0);
-  noise.jump = test::random_covariance<6>(random, 2.0);
+  noise.acceleration = test::random_covariance(random, 6, 2.0);
+  noise.jerk = test::random_covariance(random, 6, 20.0);
+  noise.jump = test::random_covariance(random, 6, 2.0);
   const MotionState whole = predict(state, time, noise), part = predict_without_noise(state, time);
   EXPECT_LT(error_between(whole, part).norm(), 1e-12);
   EXPECT_EQ(part.time, whole.time);
@@ -216,7 +216,7 @@ TEST(AbsorbSightings, IsTheKalmanUpdate) {
   for (int trial = 0; trial < 5; ++trial) {
     SCOPED_TRACE(testing::Message() << "seed " << kSeed << ", trial " << trial);
     const MotionState predicted = test::random_state(random, 0.1);
-    const Matrix6d R = test::random_covariance<6>(random, 0.1);
+    const Matrix6d R = test::random_covariance(random, 6, 0.1);
     expect_the_kalman_update<6>(predicted, Matrix6d::Identity(), R, draw(random, 0.1, 0.1));
   }
 }
@@ -228,7 +228,7 @@ TEST(AbsorbSightings, IsTheKalmanUpdateWhereTheyDetermineThePoseInPart) {
     const MotionState predicted = test::random_state(random, 0.1);
     Eigen::Matrix<double, 2, 6> H;
     for (double& value : H.reshaped()) value = random.normal();
-    const Eigen::Matrix2d R = test::random_covariance<2>(random, 0.1);
+    const Eigen::Matrix2d R = test::random_covariance(random, 2, 0.1);
     expect_the_kalman_update<2>(predicted, H, R, Eigen::Vector2d(random.normal(0.2), random.normal(0.2)));
   }
 }
@@ -248,7 +248,7 @@ TEST(AbsorbSightings, TakesOverThePoseOfSightingsThatAreFarSurer) {
   MotionState predicted = test::random_state(random, 1e3);
   PoseLikelihood sightings;
   sightings.T_world_body = predicted.T_world_body * perturbation(draw(random, 0.5, 0.3));
-  const Matrix6d R = test::random_covariance<6>(random, 0.1);
+  const Matrix6d R = test::random_covariance(random, 6, 0.1);
   sightings.information = R.inverse();
   const MotionState state = absorb(predicted, sightings);
   EXPECT_LT(difference(sightings.T_world_body, state.T_world_body).norm(), 1e-5);
@@ -259,7 +259,7 @@ TEST(AbsorbSightings, TakesOverThePoseOfSightingsThatAreFarSurer) {
 TEST(AbsorbSightings, DoesNotDependOnThePoseThatTheyAreWrittenAbout) {
   test::RandomGeometry random(kSeed);
   const MotionState predicted = test::random_state(random, 0.1);
-  const Matrix6d W = test::random_covariance<6>(random, 0.1).inverse();
+  const Matrix6d W = test::random_covariance(random, 6, 0.1).inverse();
   const Vector6d g = W * draw(random, 1e-4, 1e-4), xi = draw(random, 1e-4, 1e-4);
   const MotionState here = absorb(predicted, PoseLikelihood{predicted.T_world_body, W, g});
   const MotionState there = absorb(predicted, PoseLikelihood{predicted.T_world_body * perturbation(xi), W, g - W * xi});
@@ -290,7 +290,7 @@ Eigen::Matrix<double, 6, 24> jacobian_in_map(const MotionState& state) {
 
 MotionState random_state_with_offset(test::RandomGeometry& random, Matrix24d& P) {
   MotionState state = test::random_state(random, 0.1);
-  P = test::random_covariance<24>(random, 0.1);
+  P = test::random_covariance(random, 24, 0.1);
   state.covariance = P.topLeftCorner<18, 18>();
   state.map_offset = {random.vector(), P.bottomRightCorner<6, 6>(), P.topRightCorner<18, 6>()};
   return state;
@@ -314,7 +314,7 @@ TEST(AbsorbSightings, ConsidersTheMapOffset) {
   for (int trial = 0; trial < 5; ++trial) {
     Matrix24d P;
     const MotionState predicted = random_state_with_offset(random, P);
-    const Matrix6d R = test::random_covariance<6>(random, 0.1);
+    const Matrix6d R = test::random_covariance(random, 6, 0.1);
     const Vector6d y = draw(random, 1e-4, 1e-4);
     const PoseLikelihood sightings{predicted.T_world_body, R.inverse(), R.inverse() * y};
     const MotionState state = absorb(predicted, sightings);
@@ -344,10 +344,10 @@ TEST(LogEvidence, IsTheDensityOfTheInnovation) {
     Matrix24d P;
     const MotionState one = random_state_with_offset(random, P);
     MotionState other = one;
-    other.covariance = test::random_covariance<18>(random, 0.1);
+    other.covariance = test::random_covariance(random, 18, 0.1);
     other.map_offset = {};
     other.T_world_body = one.T_world_body * perturbation(draw(random, 0.3, 0.0));
-    const Matrix6d R = test::random_covariance<6>(random, 0.1);
+    const Matrix6d R = test::random_covariance(random, 6, 0.1);
     const Vector6d y = draw(random, 0.3, 0.3);
     const double evidence = log_evidence(one, {one.T_world_body, R.inverse(), R.inverse() * y}) -
                             log_evidence(other, {one.T_world_body, R.inverse(), R.inverse() * y});
@@ -365,7 +365,7 @@ TEST(LogEvidence, CountsOnlyWhatTheSightingsMeasure) {
     MotionState predicted = test::random_state(random, 0.1);
     Eigen::Matrix<double, 2, 6> H;
     for (double& value : H.reshaped()) value = random.normal();
-    const Eigen::Matrix2d W = test::random_covariance<2>(random, 0.1).inverse();
+    const Eigen::Matrix2d W = test::random_covariance(random, 2, 0.1).inverse();
     const Eigen::Vector2d y(random.normal(0.3), random.normal(0.3));
     const PoseLikelihood sightings{predicted.T_world_body, H.transpose() * W * H, H.transpose() * W * y};
     double evidence[2], expected[2];
@@ -384,7 +384,7 @@ TEST(AbsorbPose, IsTheKalmanUpdate) {
   test::RandomGeometry random(kSeed);
   for (int trial = 0; trial < 5; ++trial) {
     const MotionState predicted = test::random_state(random, 0.1);
-    const Matrix6d R = test::random_covariance<6>(random, 0.1);
+    const Matrix6d R = test::random_covariance(random, 6, 0.1);
     const Vector6d y = draw(random, 0.1, 0.1);
     const Matrix18d& P = predicted.covariance;
     const Matrix18x6 K = P.leftCols<6>() * (P.topLeftCorner<6, 6>() + R).inverse();

@@ -17,7 +17,7 @@ std::vector<PointObservation> uncertain_points(test::RandomGeometry& random, int
   std::vector<PointObservation> observations(static_cast<std::size_t>(count));
   for (PointObservation& o : observations) {
     o.p_world = random.vector() + Eigen::Vector3d(3, -2, 1);
-    o.covariance_world = test::random_covariance<3>(random, 0.1);
+    o.covariance_world = test::random_covariance(random, 3, 0.1);
   }
   return observations;
 }

@@ -61,7 +61,7 @@ class SmoothLinear : public testing::Test {
 
   test::RandomGeometry random_{kSeed};
   MotionNoise noise_;
-  const Eigen::Matrix3d R_ = test::random_covariance<3>(random_, 0.05);
+  const Eigen::Matrix3d R_ = test::random_covariance(random_, 3, 0.05);
   MotionState first_;
   std::vector<Eigen::Vector3d> measured_;
   std::vector<MotionStep> steps_;
