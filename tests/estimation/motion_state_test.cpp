@@ -2,6 +2,7 @@
 #include "estimation/motion_state.h"
 
 #include <cmath>
+#include <functional>
 
 #include <Eigen/LU>
 #include <gtest/gtest.h>
@@ -12,7 +13,9 @@
 namespace alidade {
 namespace {
 
-using Matrix24d = Eigen::Matrix<double, 24, 24>;
+// What is expected is computed at dynamic size: one set of expressions to compile, for matrices of every size.
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
 constexpr unsigned kSeed = 53;
 
@@ -20,17 +23,27 @@ Timestamp after(const MotionState& state, double seconds) {
   return state.time + from_seconds(seconds);
 }
 
-// How the error of a state moves with that of the state `from` it was made, by central differences.
-template <typename Function>
-Matrix18d derivative_of(const Function& made, const MotionState& from) {
-  Matrix18d F;
-  for (int i = 0; i < 18; ++i) {
-    const Vector18d step = 1e-6 * Vector18d::Unit(i);
-    F.col(i) = (error_between(made(from), made(moved_by(from, step))) -
-                error_between(made(from), made(moved_by(from, -step)))) /
-               2e-6;
+double largest_difference(const MatrixXd& a, const MatrixXd& b) {
+  return (a - b).cwiseAbs().maxCoeff();
+}
+
+// The derivative of f at zero, by central differences.
+MatrixXd derivative(const std::function<VectorXd(const VectorXd&)>& f, int size, double step) {
+  MatrixXd J(f(VectorXd::Zero(size)).size(), size);
+  for (int i = 0; i < size; ++i) {
+    VectorXd x = VectorXd::Zero(size);
+    x(i) = step;
+    const VectorXd ahead = f(x);
+    x(i) = -step;
+    J.col(i) = (ahead - f(x)) / (2 * step);
   }
-  return F;
+  return J;
+}
+
+// How the error of a state moves with that of the state `from` it was made.
+MatrixXd derivative_of(const std::function<MotionState(const MotionState&)>& made, const MotionState& from) {
+  const MotionState still = made(from);
+  return derivative([&](const VectorXd& x) { return error_between(still, made(moved_by(from, x))); }, 18, 1e-6);
 }
 
 Vector6d draw(test::RandomGeometry& random, double sigma_m, double sigma_rad) {
@@ -83,8 +96,8 @@ TEST(PredictMotion, HasTheTransitionJacobianAsItsDerivative) {
   for (int trial = 0; trial < 5; ++trial) {
     const MotionState state = test::random_state(random, 0.1);
     const auto next = [](const MotionState& from) { return predict(from, after(from, 0.3), {}); };
-    const Matrix18d F = transition_jacobian(state, next(state));
-    EXPECT_LT((F - derivative_of(next, state)).cwiseAbs().maxCoeff(), 1e-8) << "seed " << kSeed << ", trial " << trial;
+    const MatrixXd F = transition_jacobian(state, next(state));
+    EXPECT_LT(largest_difference(F, derivative_of(next, state)), 1e-8) << "seed " << kSeed << ", trial " << trial;
   }
 }
 
@@ -95,24 +108,19 @@ TEST(PredictMotion, CarriesTheCovariancesByItsDerivative) {
     for (double& value : state.map_offset.cross.reshaped()) value = random.normal(0.1);
     state.map_offset.covariance = 0.04 * Matrix6d::Identity();
     const auto next = [](const MotionState& from) { return predict(from, after(from, 0.3), {}); };
-    const Matrix18d F = derivative_of(next, state);
+    const MatrixXd F = derivative_of(next, state), P = state.covariance, cross = state.map_offset.cross;
     const MotionState made = next(state);
-    EXPECT_LT((made.covariance - F * state.covariance * F.transpose()).cwiseAbs().maxCoeff(), 1e-7)
+    EXPECT_LT(largest_difference(made.covariance, F * P * F.transpose()), 1e-7)
         << "seed " << kSeed << ", trial " << trial;
-    EXPECT_LT((made.map_offset.cross - F * state.map_offset.cross).cwiseAbs().maxCoeff(), 1e-8);
+    EXPECT_LT(largest_difference(made.map_offset.cross, F * cross), 1e-8);
     EXPECT_EQ(made.map_offset.covariance, state.map_offset.covariance);
   }
 }
 
 // The covariance that noise of a kind brings to a state without any, by central differences of what drives it.
-template <typename Function>
-Matrix18d brought(const Matrix6d& noise, const Function& driven_by) {
-  Matrix18x6 G;
-  for (int i = 0; i < 6; ++i) {
-    const Vector6d step = 1e-5 * Vector6d::Unit(i);
-    const MotionState still = driven_by(Vector6d::Zero());
-    G.col(i) = (error_between(still, driven_by(step)) - error_between(still, driven_by(-step))) / 2e-5;
-  }
+MatrixXd brought(const MatrixXd& noise, const std::function<MotionState(const Vector6d&)>& driven_by) {
+  const MotionState still = driven_by(Vector6d::Zero());
+  const MatrixXd G = derivative([&](const VectorXd& x) { return error_between(still, driven_by(x)); }, 6, 1e-5);
   return G * noise * G.transpose();
 }
 
@@ -120,10 +128,10 @@ TEST(PredictMotion, AddsTheAccelerationsByTheirDerivative) {
   test::RandomGeometry random(kSeed);
   MotionState state = test::random_state(random, 0.1);
   state.covariance.setZero();
-  const Matrix6d noise = test::random_covariance<6>(random, 2.0);
+  const Matrix6d noise = test::random_covariance(random, 6, 2.0);
   const auto driven_by = [&](const Vector6d& a) { return test::driven(state, 0.3, a, Vector6d::Zero()); };
   const MotionState next = predict(state, after(state, 0.3), {noise, Matrix6d::Zero()});
-  EXPECT_LT((next.covariance - brought(noise, driven_by)).cwiseAbs().maxCoeff(), 1e-8) << "seed " << kSeed;
+  EXPECT_LT(largest_difference(next.covariance, brought(noise, driven_by)), 1e-8) << "seed " << kSeed;
   EXPECT_GT(next.covariance.diagonal().head(6).minCoeff(), 1e-3);
 }
 
@@ -131,10 +139,10 @@ TEST(PredictMotion, AddsTheJerksByTheirDerivative) {
   test::RandomGeometry random(kSeed);
   MotionState state = test::random_state(random, 0.1);
   state.covariance.setZero();
-  const Matrix6d noise = test::random_covariance<6>(random, 20.0);
+  const Matrix6d noise = test::random_covariance(random, 6, 20.0);
   const auto driven_by = [&](const Vector6d& j) { return test::driven(state, 0.3, Vector6d::Zero(), j); };
   const MotionState next = predict(state, after(state, 0.3), {Matrix6d::Zero(), noise});
-  EXPECT_LT((next.covariance - brought(noise, driven_by)).cwiseAbs().maxCoeff(), 1e-6) << "seed " << kSeed;
+  EXPECT_LT(largest_difference(next.covariance, brought(noise, driven_by)), 1e-6) << "seed " << kSeed;
   EXPECT_GT(next.covariance.diagonal().head(6).minCoeff(), 1e-3);
 }
 
@@ -142,12 +150,12 @@ TEST(PredictMotion, AddsTheJumpsByTheirDerivative) {
   test::RandomGeometry random(kSeed);
   MotionState state = test::random_state(random, 0.1);
   state.covariance.setZero();
-  const Matrix6d noise = test::random_covariance<6>(random, 2.0), none = Matrix6d::Zero();
+  const Matrix6d noise = test::random_covariance(random, 6, 2.0), none = Matrix6d::Zero();
   const auto driven_by = [&](const Vector6d& jump) {
     return test::driven(test::jumped(state, jump), 0.3, Vector6d::Zero(), Vector6d::Zero());
   };
   const MotionState next = predict(state, after(state, 0.3), {none, none, noise});
-  EXPECT_LT((next.covariance - brought(noise, driven_by)).cwiseAbs().maxCoeff(), 1e-6) << "seed " << kSeed;
+  EXPECT_LT(largest_difference(next.covariance, brought(noise, driven_by)), 1e-6) << "seed " << kSeed;
   EXPECT_GT(next.covariance.diagonal().head(6).minCoeff(), 1e-3);
 }
 
@@ -156,14 +164,14 @@ TEST(PredictMotion, IsTheSumOfItsParts) {
   const MotionState state = test::random_state(random, 0.1);
   const Timestamp time = after(state, 0.3);
   MotionNoise noise;
-  noise.acceleration = test::random_covariance<6>(random, 2.0);
-  noise.jerk = test::random_covariance<6>(random, 20.0);
-  noise.jump = test::random_covariance<6>(random, 2.0);
+  noise.acceleration = test::random_covariance(random, 6, 2.0);
+  noise.jerk = test::random_covariance(random, 6, 20.0);
+  noise.jump = test::random_covariance(random, 6, 2.0);
   const MotionState whole = predict(state, time, noise), part = predict_without_noise(state, time);
   EXPECT_LT(error_between(whole, part).norm(), 1e-12);
   EXPECT_EQ(part.time, whole.time);
-  const Matrix18d sum = part.covariance + noise_covariance(state, part, noise);
-  EXPECT_LT((sum - whole.covariance).cwiseAbs().maxCoeff(), 1e-12);
+  const MatrixXd moved = part.covariance, added = noise_covariance(state, part, noise);
+  EXPECT_LT(largest_difference(moved + added, whole.covariance), 1e-12);
 }
 
 TEST(PredictMotion, StaysForAnEarlierTime) {
@@ -177,36 +185,29 @@ TEST(PredictMotion, StaysForAnEarlierTime) {
 }
 
 // The covariance of the error of a state that was corrected by `error`, as counted from where it is now.
-Matrix18d recounted(const MotionState& predicted, const Vector18d& error, const Matrix18d& covariance) {
+MatrixXd recounted(const MotionState& predicted, const VectorXd& error, const MatrixXd& covariance) {
   const MotionState now = moved_by(predicted, error);
-  Matrix18d J;
-  for (int i = 0; i < 18; ++i) {
-    const Vector18d step = 1e-6 * Vector18d::Unit(i);
-    J.col(i) = (error_between(now, moved_by(predicted, error + step)) -
-                error_between(now, moved_by(predicted, error - step))) /
-               2e-6;
-  }
+  const auto counted = [&](const VectorXd& x) { return error_between(now, moved_by(predicted, error + x)); };
+  const MatrixXd J = derivative(counted, 18, 1e-6);
   return J * covariance * J.transpose();
 }
 
 // The sightings say that the pose is off by y, with H of the pose's perturbation and covariance R. K = P Hᵀ (H P Hᵀ +
 // R)⁻¹, x = K y, (I - K H) P. The likelihood of H ξ = y + noise: information Hᵀ R⁻¹ H, gradient Hᵀ R⁻¹ y.
-template <int kRows>
-void expect_the_kalman_update(const MotionState& predicted, const Eigen::Matrix<double, kRows, 6>& H_pose,
-                              const Eigen::Matrix<double, kRows, kRows>& R, const Eigen::Matrix<double, kRows, 1>& y) {
-  const Eigen::Matrix<double, kRows, 6> WH = R.inverse() * H_pose;
+void expect_the_kalman_update(const MotionState& predicted, const MatrixXd& H_pose, const MatrixXd& R,
+                              const VectorXd& y) {
+  const MatrixXd WH = R.inverse() * H_pose;
   const MotionState state =
       absorb(predicted, PoseLikelihood{predicted.T_world_body, H_pose.transpose() * WH, WH.transpose() * y});
 
-  Eigen::Matrix<double, kRows, 18> H = Eigen::Matrix<double, kRows, 18>::Zero();
-  H.template leftCols<6>() = H_pose;
-  const Matrix18d& P = predicted.covariance;
-  const Eigen::Matrix<double, 18, kRows> K = P * H.transpose() * (H * P * H.transpose() + R).inverse();
-  const Vector18d x = K * y;
-  const Matrix18d P_after = recounted(predicted, x, P - K * H * P);
+  MatrixXd H = MatrixXd::Zero(y.size(), 18);
+  H.leftCols(6) = H_pose;
+  const MatrixXd P = predicted.covariance, S = H * P * H.transpose() + R, K = P * H.transpose() * S.inverse();
+  const VectorXd x = K * y;
+  const MatrixXd P_after = recounted(predicted, x, P - K * H * P);
   EXPECT_GT(x.norm(), 1e-2);
   EXPECT_LT((error_between(predicted, state) - x).norm(), 1e-9);
-  EXPECT_LT((state.covariance - P_after).cwiseAbs().maxCoeff(), 1e-8);
+  EXPECT_LT(largest_difference(state.covariance, P_after), 1e-8);
   EXPECT_EQ(state.covariance, Matrix18d(state.covariance.transpose()));
   EXPECT_EQ(state.time, predicted.time);
 }
@@ -216,8 +217,8 @@ TEST(AbsorbSightings, IsTheKalmanUpdate) {
   for (int trial = 0; trial < 5; ++trial) {
     SCOPED_TRACE(testing::Message() << "seed " << kSeed << ", trial " << trial);
     const MotionState predicted = test::random_state(random, 0.1);
-    const Matrix6d R = test::random_covariance<6>(random, 0.1);
-    expect_the_kalman_update<6>(predicted, Matrix6d::Identity(), R, draw(random, 0.1, 0.1));
+    const MatrixXd R = test::random_covariance(random, 6, 0.1);
+    expect_the_kalman_update(predicted, MatrixXd::Identity(6, 6), R, draw(random, 0.1, 0.1));
   }
 }
 
@@ -226,10 +227,10 @@ TEST(AbsorbSightings, IsTheKalmanUpdateWhereTheyDetermineThePoseInPart) {
   for (int trial = 0; trial < 5; ++trial) {
     SCOPED_TRACE(testing::Message() << "seed " << kSeed << ", trial " << trial);
     const MotionState predicted = test::random_state(random, 0.1);
-    Eigen::Matrix<double, 2, 6> H;
+    MatrixXd H(2, 6);
     for (double& value : H.reshaped()) value = random.normal();
-    const Eigen::Matrix2d R = test::random_covariance<2>(random, 0.1);
-    expect_the_kalman_update<2>(predicted, H, R, Eigen::Vector2d(random.normal(0.2), random.normal(0.2)));
+    const MatrixXd R = test::random_covariance(random, 2, 0.1);
+    expect_the_kalman_update(predicted, H, R, Eigen::Vector2d(random.normal(0.2), random.normal(0.2)));
   }
 }
 
@@ -238,7 +239,7 @@ TEST(AbsorbSightings, LeavesTheStateWhereTheySayNothing) {
   const MotionState predicted = test::random_state(random, 0.1);
   const MotionState state = absorb(predicted, PoseLikelihood{random.pose(), Matrix6d::Zero(), Vector6d::Zero()});
   EXPECT_LT(error_between(predicted, state).norm(), 1e-12);
-  EXPECT_LT((state.covariance - predicted.covariance).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_LT(largest_difference(state.covariance, predicted.covariance), 1e-12);
 }
 
 // Half a radian from the prediction: what counts is where the likelihood has its greatest value and how wide it is
@@ -248,18 +249,18 @@ TEST(AbsorbSightings, TakesOverThePoseOfSightingsThatAreFarSurer) {
   MotionState predicted = test::random_state(random, 1e3);
   PoseLikelihood sightings;
   sightings.T_world_body = predicted.T_world_body * perturbation(draw(random, 0.5, 0.3));
-  const Matrix6d R = test::random_covariance<6>(random, 0.1);
+  const MatrixXd R = test::random_covariance(random, 6, 0.1);
   sightings.information = R.inverse();
   const MotionState state = absorb(predicted, sightings);
   EXPECT_LT(difference(sightings.T_world_body, state.T_world_body).norm(), 1e-5);
-  EXPECT_LT((state.covariance.topLeftCorner<6, 6>() - R).cwiseAbs().maxCoeff(), 1e-5);
+  EXPECT_LT(largest_difference(state.covariance.topLeftCorner<6, 6>(), R), 1e-5);
 }
 
 // The same sightings, written about two poses: g' = g - W ξ where the perturbation is small.
 TEST(AbsorbSightings, DoesNotDependOnThePoseThatTheyAreWrittenAbout) {
   test::RandomGeometry random(kSeed);
   const MotionState predicted = test::random_state(random, 0.1);
-  const Matrix6d W = test::random_covariance<6>(random, 0.1).inverse();
+  const Matrix6d W = test::random_covariance(random, 6, 0.1).inverse();
   const Vector6d g = W * draw(random, 1e-4, 1e-4), xi = draw(random, 1e-4, 1e-4);
   const MotionState here = absorb(predicted, PoseLikelihood{predicted.T_world_body, W, g});
   const MotionState there = absorb(predicted, PoseLikelihood{predicted.T_world_body * perturbation(xi), W, g - W * xi});
@@ -275,33 +276,32 @@ Eigen::Isometry3d shown_by(const MapOffset& offset, const Vector6d& by, const Ei
   return T_true_map.inverse() * T_world_camera;
 }
 
-// How the pose in the map moves with the errors of state and offset, stacked.
-Eigen::Matrix<double, 6, 24> jacobian_in_map(const MotionState& state) {
-  Eigen::Matrix<double, 6, 24> H = Eigen::Matrix<double, 6, 24>::Zero();
-  H.leftCols<6>().setIdentity();
-  for (int i = 0; i < 6; ++i) {
-    const Vector6d step = 1e-6 * Vector6d::Unit(i);
-    H.col(18 + i) = (difference(state.T_world_body, shown_by(state.map_offset, step, state.T_world_body)) -
-                     difference(state.T_world_body, shown_by(state.map_offset, -step, state.T_world_body))) /
-                    2e-6;
-  }
+// How the pose in the map moves with the errors of state and offset, stacked: 6×24.
+MatrixXd jacobian_in_map(const MotionState& state) {
+  const auto shown = [&](const VectorXd& x) {
+    return difference(state.T_world_body, shown_by(state.map_offset, x, state.T_world_body));
+  };
+  MatrixXd H = MatrixXd::Zero(6, 24);
+  H.leftCols(6).setIdentity();
+  H.rightCols(6) = derivative(shown, 6, 1e-6);
   return H;
 }
 
-MotionState random_state_with_offset(test::RandomGeometry& random, Matrix24d& P) {
+// P: the covariance of the stack, 24×24.
+MotionState random_state_with_offset(test::RandomGeometry& random, MatrixXd& P) {
   MotionState state = test::random_state(random, 0.1);
-  P = test::random_covariance<24>(random, 0.1);
-  state.covariance = P.topLeftCorner<18, 18>();
-  state.map_offset = {random.vector(), P.bottomRightCorner<6, 6>(), P.topRightCorner<18, 6>()};
+  P = test::random_covariance(random, 24, 0.1);
+  state.covariance = P.topLeftCorner(18, 18);
+  state.map_offset = {random.vector(), P.bottomRightCorner(6, 6), P.topRightCorner(18, 6)};
   return state;
 }
 
 TEST(MapOffset, AddsToTheCovarianceOfThePoseInTheMap) {
   test::RandomGeometry random(kSeed);
-  Matrix24d P;
+  MatrixXd P;
   const MotionState state = random_state_with_offset(random, P);
-  const Eigen::Matrix<double, 6, 24> H = jacobian_in_map(state);
-  EXPECT_LT((covariance_in_map(state) - H * P * H.transpose()).cwiseAbs().maxCoeff(), 1e-8) << "seed " << kSeed;
+  const MatrixXd H = jacobian_in_map(state);
+  EXPECT_LT(largest_difference(covariance_in_map(state), H * P * H.transpose()), 1e-8) << "seed " << kSeed;
   MotionState alone = state;
   alone.map_offset = {};
   EXPECT_EQ(covariance_in_map(alone), Matrix6d(state.covariance.topLeftCorner<6, 6>()));
@@ -312,48 +312,47 @@ TEST(MapOffset, AddsToTheCovarianceOfThePoseInTheMap) {
 TEST(AbsorbSightings, ConsidersTheMapOffset) {
   test::RandomGeometry random(kSeed);
   for (int trial = 0; trial < 5; ++trial) {
-    Matrix24d P;
+    MatrixXd P;
     const MotionState predicted = random_state_with_offset(random, P);
-    const Matrix6d R = test::random_covariance<6>(random, 0.1);
-    const Vector6d y = draw(random, 1e-4, 1e-4);
-    const PoseLikelihood sightings{predicted.T_world_body, R.inverse(), R.inverse() * y};
+    const MatrixXd R = test::random_covariance(random, 6, 0.1), W = R.inverse();
+    const VectorXd y = draw(random, 1e-4, 1e-4);
+    const PoseLikelihood sightings{predicted.T_world_body, W, W * y};
     const MotionState state = absorb(predicted, sightings);
 
-    const Eigen::Matrix<double, 6, 24> H = jacobian_in_map(predicted);
-    Eigen::Matrix<double, 24, 6> K = P * H.transpose() * (H * P * H.transpose() + R).inverse();
-    K.bottomRows<6>().setZero();
-    const Matrix24d rest = Matrix24d::Identity() - K * H;
-    const Matrix24d P_after = rest * P * rest.transpose() + K * R * K.transpose();
-    const Vector18d x = K.topRows<18>() * y;
+    const MatrixXd H = jacobian_in_map(predicted), S = H * P * H.transpose() + R;
+    MatrixXd K = P * H.transpose() * S.inverse();
+    K.bottomRows(6).setZero();
+    const MatrixXd rest = MatrixXd::Identity(24, 24) - K * H;
+    const MatrixXd P_after = rest * P * rest.transpose() + K * R * K.transpose();
+    const VectorXd x = (K * y).head(18);
     EXPECT_LT((error_between(predicted, state) - x).norm(), 1e-4 * x.norm()) << "seed " << kSeed << ", trial " << trial;
-    EXPECT_LT((state.covariance - P_after.topLeftCorner<18, 18>()).cwiseAbs().maxCoeff(), 1e-4);
-    EXPECT_LT((state.map_offset.cross - P_after.topRightCorner<18, 6>()).cwiseAbs().maxCoeff(), 1e-4);
+    EXPECT_LT(largest_difference(state.covariance, P_after.topLeftCorner(18, 18)), 1e-4);
+    EXPECT_LT(largest_difference(state.map_offset.cross, P_after.topRightCorner(18, 6)), 1e-4);
     EXPECT_EQ(state.map_offset.covariance, predicted.map_offset.covariance);
     EXPECT_EQ(state.map_offset.centre_world, predicted.map_offset.centre_world);
   }
 }
 
 // log N(y; 0, P + R) of the innovation y, less its constant.
-double log_density(const Vector6d& y, const Matrix6d& S) {
+double log_density(const VectorXd& y, const MatrixXd& S) {
   return -0.5 * (y.dot(S.inverse() * y) + std::log(S.determinant()));
 }
 
 TEST(LogEvidence, IsTheDensityOfTheInnovation) {
   test::RandomGeometry random(kSeed);
   for (int trial = 0; trial < 5; ++trial) {
-    Matrix24d P;
+    MatrixXd P;
     const MotionState one = random_state_with_offset(random, P);
     MotionState other = one;
-    other.covariance = test::random_covariance<18>(random, 0.1);
+    other.covariance = test::random_covariance(random, 18, 0.1);
     other.map_offset = {};
     other.T_world_body = one.T_world_body * perturbation(draw(random, 0.3, 0.0));
-    const Matrix6d R = test::random_covariance<6>(random, 0.1);
-    const Vector6d y = draw(random, 0.3, 0.3);
-    const double evidence = log_evidence(one, {one.T_world_body, R.inverse(), R.inverse() * y}) -
-                            log_evidence(other, {one.T_world_body, R.inverse(), R.inverse() * y});
-    const Vector6d y_other = y + difference(other.T_world_body, one.T_world_body);
-    const double expected =
-        log_density(y, covariance_in_map(one) + R) - log_density(y_other, covariance_in_map(other) + R);
+    const MatrixXd R = test::random_covariance(random, 6, 0.1), W = R.inverse();
+    const VectorXd y = draw(random, 0.3, 0.3), between = difference(other.T_world_body, one.T_world_body);
+    const PoseLikelihood sightings{one.T_world_body, W, W * y};
+    const double evidence = log_evidence(one, sightings) - log_evidence(other, sightings);
+    const MatrixXd P_one = covariance_in_map(one), P_other = covariance_in_map(other);
+    const double expected = log_density(y, P_one + R) - log_density(y + between, P_other + R);
     EXPECT_NEAR(evidence, expected, 1e-7 * std::abs(expected)) << "seed " << kSeed << ", trial " << trial;
   }
 }
@@ -363,16 +362,16 @@ TEST(LogEvidence, CountsOnlyWhatTheSightingsMeasure) {
   test::RandomGeometry random(kSeed);
   for (int trial = 0; trial < 5; ++trial) {
     MotionState predicted = test::random_state(random, 0.1);
-    Eigen::Matrix<double, 2, 6> H;
+    MatrixXd H(2, 6);
     for (double& value : H.reshaped()) value = random.normal();
-    const Eigen::Matrix2d W = test::random_covariance<2>(random, 0.1).inverse();
-    const Eigen::Vector2d y(random.normal(0.3), random.normal(0.3));
-    const PoseLikelihood sightings{predicted.T_world_body, H.transpose() * W * H, H.transpose() * W * y};
+    const MatrixXd R = test::random_covariance(random, 2, 0.1), WH = R.inverse() * H;
+    const VectorXd y = Eigen::Vector2d(random.normal(0.3), random.normal(0.3));
+    const PoseLikelihood sightings{predicted.T_world_body, H.transpose() * WH, WH.transpose() * y};
     double evidence[2], expected[2];
     for (int k = 0; k < 2; ++k) {
-      const Eigen::Matrix2d S = H * predicted.covariance.topLeftCorner<6, 6>() * H.transpose() + W.inverse();
+      const MatrixXd P = predicted.covariance.topLeftCorner<6, 6>();
       evidence[k] = log_evidence(predicted, sightings);
-      expected[k] = -0.5 * (y.dot(S.inverse() * y) + std::log(S.determinant()));
+      expected[k] = log_density(y, H * P * H.transpose() + R);
       predicted.covariance *= 4;
     }
     EXPECT_NEAR(evidence[1] - evidence[0], expected[1] - expected[0], 1e-7) << "seed " << kSeed << ", trial " << trial;
@@ -384,16 +383,15 @@ TEST(AbsorbPose, IsTheKalmanUpdate) {
   test::RandomGeometry random(kSeed);
   for (int trial = 0; trial < 5; ++trial) {
     const MotionState predicted = test::random_state(random, 0.1);
-    const Matrix6d R = test::random_covariance<6>(random, 0.1);
-    const Vector6d y = draw(random, 0.1, 0.1);
-    const Matrix18d& P = predicted.covariance;
-    const Matrix18x6 K = P.leftCols<6>() * (P.topLeftCorner<6, 6>() + R).inverse();
-    const Matrix18d P_after = P - K * P.topRows<6>();
-    const Vector18d x = K * y;
+    const MatrixXd R = test::random_covariance(random, 6, 0.1);
+    const VectorXd y = draw(random, 0.1, 0.1);
+    const MatrixXd P = predicted.covariance, S = P.topLeftCorner(6, 6) + R, K = P.leftCols(6) * S.inverse();
+    const MatrixXd P_after = P - K * P.topRows(6);
+    const VectorXd x = K * y;
     const MotionState state =
-        absorb(predicted, predicted.T_world_body * perturbation(x.head<6>()), P_after.topLeftCorner<6, 6>());
+        absorb(predicted, predicted.T_world_body * perturbation(x.head(6)), P_after.topLeftCorner(6, 6));
     EXPECT_LT((error_between(predicted, state) - x).norm(), 1e-8) << "seed " << kSeed << ", trial " << trial;
-    EXPECT_LT((state.covariance - P_after).cwiseAbs().maxCoeff(), 1e-9);
+    EXPECT_LT(largest_difference(state.covariance, P_after), 1e-9);
     EXPECT_EQ(state.covariance, Matrix18d(state.covariance.transpose()));
   }
 }
@@ -408,7 +406,7 @@ TEST(AdaptMotionNoise, BlendsInTheChangeOfVelocity) {
   const MotionNoise noise = adapt({isotropic_noise(4, 2), isotropic_noise(5, 6)}, before, now, 0.25);
   const Matrix6d expected = isotropic_noise(std::sqrt(0.75 * 16 + 0.25 * 100 * 2 / 3),  //
                                             std::sqrt(0.75 * 4 + 0.25 * 9 * 2 / 3));
-  EXPECT_LT((noise.acceleration - expected).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_LT(largest_difference(noise.acceleration, expected), 1e-9);
   EXPECT_EQ(noise.jerk, isotropic_noise(5, 6));
 }
 

@@ -11,13 +11,15 @@
 namespace alidade {
 namespace {
 
+using Eigen::MatrixXd;  // for what is expected: one set of expressions to compile
+
 constexpr unsigned kSeed = 73;
 
 std::vector<PointObservation> uncertain_points(test::RandomGeometry& random, int count) {
   std::vector<PointObservation> observations(static_cast<std::size_t>(count));
   for (PointObservation& o : observations) {
     o.p_world = random.vector() + Eigen::Vector3d(3, -2, 1);
-    o.covariance_world = test::random_covariance<3>(random, 0.1);
+    o.covariance_world = test::random_covariance(random, 3, 0.1);
   }
   return observations;
 }
@@ -27,8 +29,8 @@ Eigen::Vector3d displaced(const MapOffset& offset, const Vector6d& by, const Eig
   return offset.centre_world + exp_so3(by.tail<3>()) * (p - offset.centre_world) + by.head<3>();
 }
 
-Eigen::Matrix<double, 3, 6> jacobian(const MapOffset& offset, const Eigen::Vector3d& p) {
-  Eigen::Matrix<double, 3, 6> J;
+MatrixXd jacobian(const MapOffset& offset, const Eigen::Vector3d& p) {
+  MatrixXd J(3, 6);
   for (int i = 0; i < 6; ++i) {
     const Vector6d step = 1e-6 * Vector6d::Unit(i);
     J.col(i) = (displaced(offset, step, p) - displaced(offset, -step, p)) / 2e-6;
@@ -41,13 +43,13 @@ TEST(RigidOffset, HasTheCovarianceOfTheBestFittingDisplacement) {
   for (const int count : {3, 4, 20}) {
     const auto observations = uncertain_points(random, count);
     const MapOffset offset = rigid_offset(observations);
-    Matrix6d information = Matrix6d::Zero();
+    MatrixXd information = MatrixXd::Zero(6, 6);
     for (const PointObservation& o : observations) {
-      const Eigen::Matrix<double, 3, 6> J = jacobian(offset, o.p_world);
-      information += J.transpose() * o.covariance_world.inverse() * J;
+      const MatrixXd J = jacobian(offset, o.p_world), W = o.covariance_world.inverse();
+      information += J.transpose() * W * J;
     }
-    EXPECT_LT((offset.covariance * information - Matrix6d::Identity()).cwiseAbs().maxCoeff(), 1e-6)
-        << count << " points, seed " << kSeed;
+    const MatrixXd one = MatrixXd(offset.covariance) * information;
+    EXPECT_LT((one - MatrixXd::Identity(6, 6)).cwiseAbs().maxCoeff(), 1e-6) << count << " points, seed " << kSeed;
     EXPECT_TRUE(offset.cross.isZero(0.0));
   }
 }
@@ -95,9 +97,9 @@ TEST(ApartFromMapOffset, LeavesCovariances) {
     ASSERT_EQ(apart.size(), observations.size());
     double least = 1e300, taken = 0.0;
     for (std::size_t i = 0; i < apart.size(); ++i) {
-      const Eigen::Matrix<double, 3, 6> J = jacobian(offset, observations[i].p_world);
+      const MatrixXd J = jacobian(offset, observations[i].p_world), covariance = offset.covariance;
       const Eigen::Matrix3d off = observations[i].covariance_world - apart[i].covariance_world;
-      EXPECT_LT((off - J * offset.covariance * J.transpose()).norm(), 1e-9);
+      EXPECT_LT((off - Eigen::Matrix3d(J * covariance * J.transpose())).norm(), 1e-9);
       const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(apart[i].covariance_world);
       least = std::min(least, solver.eigenvalues().minCoeff());
       taken += (observations[i].covariance_world.inverse() * off).trace();

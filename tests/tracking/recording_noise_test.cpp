@@ -14,7 +14,7 @@ constexpr unsigned kSeed = 83;
 
 TEST(Blurred, AddsTheCovarianceAndKeepsThePeak) {
   test::RandomGeometry random(kSeed);
-  const Matrix6d P = test::random_covariance<6>(random, 0.1), R = test::random_covariance<6>(random, 0.2);
+  const Matrix6d P = test::random_covariance(random, 6, 0.1), R = test::random_covariance(random, 6, 0.2);
   Vector6d gradient;
   for (double& value : gradient) value = random.normal();
   const PoseLikelihood sharp{random.pose(), P.inverse(), gradient};

@@ -15,23 +15,28 @@ namespace {
 constexpr unsigned kSeed = 71;
 constexpr double kStep_s = 0.1;
 
-using Matrix9d = Eigen::Matrix<double, 9, 9>;
-using Vector9d = Eigen::Matrix<double, 9, 1>;
+// At dynamic size: one set of expressions to compile.
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
 // The translational part of a state or an error: place, velocity, acceleration.
-Vector9d place_of(const MotionState& state) {
-  Vector9d x;
+VectorXd place_of(const MotionState& state) {
+  VectorXd x(9);
   x << state.T_world_body.translation(), state.v_world, state.a_world;
   return x;
 }
 
-Matrix9d place_part(const Matrix18d& P) {
+MatrixXd place_part(const MatrixXd& P) {
   constexpr int kFrom[] = {0, 6, 12};
-  Matrix9d part;
+  MatrixXd part(9, 9);
   for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < 3; ++k) part.block<3, 3>(3 * i, 3 * k) = P.block<3, 3>(kFrom[i], kFrom[k]);
+    for (int k = 0; k < 3; ++k) part.block(3 * i, 3 * k, 3, 3) = P.block(kFrom[i], kFrom[k], 3, 3);
   }
   return part;
+}
+
+double largest_difference(const MatrixXd& a, const MatrixXd& b) {
+  return (a - b).cwiseAbs().maxCoeff();
 }
 
 // A camera that does not turn and whose place is measured: all is linear.
@@ -61,7 +66,7 @@ class SmoothLinear : public testing::Test {
 
   test::RandomGeometry random_{kSeed};
   MotionNoise noise_;
-  const Eigen::Matrix3d R_ = test::random_covariance<3>(random_, 0.05);
+  const Eigen::Matrix3d R_ = test::random_covariance(random_, 3, 0.05);
   MotionState first_;
   std::vector<Eigen::Vector3d> measured_;
   std::vector<MotionStep> steps_;
@@ -71,37 +76,38 @@ class SmoothLinear : public testing::Test {
 TEST_F(SmoothLinear, IsTheLeastSquaresEstimateOfAllFramesTogether) {
   constexpr int kUnknowns = 9 + 6 * (kFrames - 1);
   constexpr double dt = kStep_s;
-  const Eigen::Matrix3d I = Eigen::Matrix3d::Identity(), O = Eigen::Matrix3d::Zero();
-  Matrix9d F;
+  const MatrixXd I = MatrixXd::Identity(3, 3), O = MatrixXd::Zero(3, 3);
+  MatrixXd F(9, 9), G(9, 6);
   F << I, dt * I, dt * dt / 2 * I, O, I, dt * I, O, O, I;
-  Eigen::Matrix<double, 9, 6> G;
   G << dt * dt * I, dt * dt * dt / 6 * I, dt * I, dt * dt / 2 * I, O, dt * I;
-  std::vector<Eigen::MatrixXd> A(kFrames, Eigen::MatrixXd::Zero(9, kUnknowns));  // x_k = A_k unknowns
-  Eigen::MatrixXd N = Eigen::MatrixXd::Zero(kUnknowns, kUnknowns);
-  Eigen::VectorXd b = Eigen::VectorXd::Zero(kUnknowns);
-  N.topLeftCorner<9, 9>() = place_part(first_.covariance).inverse();
+  std::vector<MatrixXd> A(kFrames, MatrixXd::Zero(9, kUnknowns));  // x_k = A_k unknowns
+  MatrixXd N = MatrixXd::Zero(kUnknowns, kUnknowns);
+  VectorXd b = VectorXd::Zero(kUnknowns);
+  N.topLeftCorner(9, 9) = place_part(first_.covariance).inverse();
+  const MatrixXd W = R_.inverse();
   for (int k = 0; k < kFrames; ++k) {
     const auto at = static_cast<std::size_t>(k);
     if (k == 0) {
-      A[at].leftCols<9>().setIdentity();
+      A[at].leftCols(9).setIdentity();
     } else {
       A[at] = F * A[at - 1];
-      A[at].middleCols<6>(9 + 6 * (k - 1)) = G;
-      N.block<3, 3>(3 + 6 * k, 3 + 6 * k) = noise_.acceleration.topLeftCorner<3, 3>().inverse();
-      N.block<3, 3>(6 + 6 * k, 6 + 6 * k) = noise_.jerk.topLeftCorner<3, 3>().inverse();
+      A[at].middleCols(9 + 6 * (k - 1), 6) = G;
+      N.block(3 + 6 * k, 3 + 6 * k, 3, 3) = Eigen::Matrix3d(noise_.acceleration.topLeftCorner<3, 3>()).inverse();
+      N.block(6 + 6 * k, 6 + 6 * k, 3, 3) = Eigen::Matrix3d(noise_.jerk.topLeftCorner<3, 3>()).inverse();
     }
-    const Eigen::MatrixXd H = A[at].topRows<3>();
-    N += H.transpose() * R_.inverse() * H;
-    b += H.transpose() * R_.inverse() * measured_[at];
+    const MatrixXd H = A[at].topRows(3), WH = W * H;
+    N += H.transpose() * WH;
+    b += WH.transpose() * VectorXd(measured_[at]);
   }
-  const Eigen::MatrixXd P = N.inverse();
+  const MatrixXd P = N.inverse();
+  const VectorXd unknowns = P * b;
   const std::vector<SmoothedState> smoothed = smooth(steps_);
   ASSERT_EQ(smoothed.size(), steps_.size());
   for (std::size_t k = 0; k < smoothed.size(); ++k) {
-    EXPECT_LT((place_of(smoothed[k].state) - A[k] * P * b).norm(), 1e-8) << "frame " << k << ", seed " << kSeed;
-    EXPECT_LT((place_part(smoothed[k].state.covariance) - A[k] * P * A[k].transpose()).cwiseAbs().maxCoeff(), 1e-8);
+    EXPECT_LT((place_of(smoothed[k].state) - A[k] * unknowns).norm(), 1e-8) << "frame " << k << ", seed " << kSeed;
+    EXPECT_LT(largest_difference(place_part(smoothed[k].state.covariance), A[k] * P * A[k].transpose()), 1e-8);
     if (k + 1 == smoothed.size()) continue;
-    EXPECT_LT((place_part(smoothed[k].with_next) - A[k] * P * A[k + 1].transpose()).cwiseAbs().maxCoeff(), 1e-8);
+    EXPECT_LT(largest_difference(place_part(smoothed[k].with_next), A[k] * P * A[k + 1].transpose()), 1e-8);
   }
 }
 
@@ -115,8 +121,8 @@ TEST_F(SmoothLinear, LeavesTheLastState) {
 TEST_F(SmoothLinear, TakesVarianceOffAllButTheLast) {
   const std::vector<SmoothedState> smoothed = smooth(steps_);
   for (std::size_t k = 0; k + 1 < smoothed.size(); ++k) {
-    const Matrix9d off = place_part(steps_[k].state.covariance - smoothed[k].state.covariance);
-    const Eigen::SelfAdjointEigenSolver<Matrix9d> solver(off, Eigen::EigenvaluesOnly);
+    const MatrixXd off = place_part(steps_[k].state.covariance) - place_part(smoothed[k].state.covariance);
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(off, Eigen::EigenvaluesOnly);
     EXPECT_GT(solver.eigenvalues().minCoeff(), -1e-12) << "frame " << k;
     EXPECT_GT(off.diagonal().minCoeff(), 1e-6) << "frame " << k;
   }
