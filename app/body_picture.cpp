@@ -9,21 +9,12 @@
 
 #include <fmt/format.h>
 
+#include "app/detector_scene.h"
+
 namespace alidade {
 namespace {
 
 constexpr Rgb kSight{176, 180, 190};
-
-// How the view of a camera (x right, y down, z forward) lies in the frame of a model.
-Eigen::Matrix3d R_model_view(const LineModel& model) {
-  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
-  if (std::holds_alternative<Lighthouse1>(model) || std::holds_alternative<Lighthouse2>(model)) {
-    R << 0, 0, 1, -1, 0, 0, 0, -1, 0;  // x forward, z up
-  } else if (std::holds_alternative<Lighthouse2Full>(model)) {
-    R << 1, 0, 0, 0, -1, 0, 0, 0, -1;  // looks along -z, y up
-  }
-  return R;
-}
 
 bool is_shown(const BodySample& sample) {
   return sample.status == BodyStatus::Tracked;
@@ -40,36 +31,13 @@ Eigen::AlignedBox3d box_of(const BodyRun& run) {
   return box;
 }
 
-void add_detectors(const BodyRun& run, double size_m, Scene& scene) {
-  std::map<std::string, Eigen::AlignedBox3d> stations;
-  for (const LineDetector& detector : run.detectors) {
-    CameraPyramid pyramid;
-    pyramid.T_world_camera = detector.T_world_station * detector.T_station_detector;
-    pyramid.T_world_camera.translation() = centre_world(detector);
-    pyramid.T_world_camera.linear() *= R_model_view(detector.model);
-    pyramid.colour = palette::kInk;
-    pyramid.depth_m = size_m;
-    // A line detector sees far to both sides of its focal line, and nothing of where along it.
-    if (!std::holds_alternative<PixelAxis>(detector.model)) pyramid.half_extent = {0.55, 0.16};
-    scene.cameras.push_back(pyramid);
-    stations[detector.station].extend(centre_world(detector));
-  }
-  constexpr std::size_t kMostLabels = 24;
-  if (stations.size() > kMostLabels) return;
-  for (const auto& [name, box] : stations) {
-    scene.labels.push_back({box.center() + Eigen::Vector3d(0, 0, 1.2 * size_m), name, palette::kInk});
-  }
-}
-
-// The largest of 1, 3, 10, 30, ... standard deviations at which the typical ellipsoid is not larger than that.
-double enlargement(const std::vector<const BodySample*>& samples, double most_m) {
+// How many times a typical ellipsoid is enlarged.
+double typical_enlargement(const std::vector<const BodySample*>& samples, double most_m) {
   std::vector<double> sigmas;
   for (const BodySample* s : samples) sigmas.push_back(std::sqrt(s->covariance.topLeftCorner<3, 3>().trace()));
   const auto middle = sigmas.begin() + static_cast<std::ptrdiff_t>(sigmas.size() / 2);
   std::nth_element(sigmas.begin(), middle, sigmas.end());
-  if (!(*middle > 0) || !std::isfinite(*middle)) return 1.0;
-  const double decade = std::pow(10.0, std::floor(std::log10(most_m / *middle)));
-  return std::max(1.0, 3.0 * decade * *middle <= most_m ? 3.0 * decade : decade);
+  return enlargement(*middle, most_m);
 }
 
 void add_covariances(const BodyTally& tally, double size_m, const Rgb& colour, Scene& scene) {
@@ -79,7 +47,7 @@ void add_covariances(const BodyTally& tally, double size_m, const Rgb& colour, S
     if (is_shown(s)) tracked.push_back(&s);
   }
   if (tracked.empty()) return;
-  const double sigmas = enlargement(tracked, size_m);
+  const double sigmas = typical_enlargement(tracked, size_m);
   for (std::size_t k = 0; k < std::min(kMost, tracked.size()); ++k) {
     const BodySample& s = *tracked[k * tracked.size() / std::min(kMost, tracked.size())];
     const Eigen::Matrix3d R = s.T_world_body.linear();
@@ -143,7 +111,7 @@ Scene scene_of(const BodyRun& run) {
   scene.point_size_px = 9.0;
   const Eigen::AlignedBox3d box = box_of(run);
   const double size_m = box.isEmpty() ? 0.1 : std::max(1e-3, 0.04 * box.diagonal().norm());
-  add_detectors(run, size_m, scene);
+  add_detectors(run.detectors, {size_m, palette::kInk, true}, scene);
   scene.legend.push_back({"detectors", palette::kInk, PyramidStyle::Hollow});
   for (std::size_t i = 0; i < run.bodies.size(); ++i) {
     const Rgb colour = curve_colour(i + 1);

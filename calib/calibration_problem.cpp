@@ -29,8 +29,8 @@ CalibrationProblem::CalibrationProblem(CalibrationState start, std::vector<Place
   lay_knots();
   lay_border();
   for (const PlacedReading& reading : readings_) places_.push_back(place(reading.time_s));
-  std::vector<ReferencePosition> between;
-  for (const ReferencePosition& position : reference_.positions) {
+  std::vector<TimedPosition> between;
+  for (const TimedPosition& position : reference_.positions) {
     const double t = to_seconds(position.time.time_since_epoch());
     if (!(t >= times_.front() && t < times_.back())) continue;
     const Place p = place(t);

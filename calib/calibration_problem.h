@@ -13,7 +13,7 @@ namespace alidade {
 
 /// All that is estimated.
 struct CalibrationState {
-  Scene scene;
+  DetectorScene scene;
   std::vector<MotionKnot> knots;
   Eigen::Isometry3d T_reference_world = Eigen::Isometry3d::Identity();
   Eigen::Vector3d p_body_reference = Eigen::Vector3d::Zero();

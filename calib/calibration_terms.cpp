@@ -126,7 +126,7 @@ double CalibrationProblem::add_reference(const CalibrationState& state, Bordered
     const MotionPose pose =
         interpolate(state.knots[at.knot], state.knots[at.knot + 1], options_.knot_interval_s, at.fraction);
     const Vector3d p_world = pose.p_world + pose.R_world_body * state.p_body_reference;
-    const Vector3d r = (reference_.positions[n].p_reference - T * p_world) / reference_.sigma_m;
+    const Vector3d r = (reference_.positions[n].p - T * p_world) / reference_.sigma_m;
     cost += 0.5 * kScale2 * std::log1p(r.squaredNorm() / kScale2);
     if (!system) continue;
     const double weight = 1.0 / (1.0 + r.squaredNorm() / kScale2);

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "calib/calibration_problem.h"
+#include "calib/placed_readings.h"
 #include "geometry/alignment.h"
 
 namespace alidade {
@@ -15,6 +16,7 @@ namespace {
 
 constexpr int kFewestReadings = 24;      // four markers seen six times
 constexpr double kFirstLoss = 16.0;      // times the wanted loss: how generously the readings are judged at first
+constexpr double kMostDamping = 1e4;     // a step so short gains nothing any more
 constexpr int kMotionIterations = 15;    // of the motion alone, before the stations move
 constexpr double kWorstPosition = 0.25;  // m; a station less certain is not determined
 constexpr double kWorstRotation = 0.1;   // rad
@@ -33,53 +35,56 @@ struct Minimum {
   CalibrationState state;
   int iterations = 0;
   bool is_solved = false;
+  bool is_settled = false;
+};
+
+// How far to go, and who is told.
+struct Effort {
+  double loss_sigmas = 3.0;
+  int max_iterations = 1;
+  const char* stage = "";
+  const CalibrationContext& context;
 };
 
 // Levenberg–Marquardt under a loss that tightens, each time the cost has settled, down to the one wanted or to what the
 // bulk of the residuals allows.
-Minimum minimise(const CalibrationProblem& problem, CalibrationState start, double loss_sigmas, int max_iterations) {
+Minimum minimise(const CalibrationProblem& problem, CalibrationState start, const Effort& effort) {
   Minimum minimum{std::move(start)};
-  const auto bulk = [&] { return 3.0 * median_absolute(problem.residuals(minimum.state)); };
-  double damping = 1e-6, loss = std::max(kFirstLoss * loss_sigmas, 2.0 * bulk());
+  const auto wanted_loss = [&] {
+    return std::max(effort.loss_sigmas, 3.0 * median_absolute(problem.residuals(minimum.state)));
+  };
+  double damping = 1e-6, loss = std::max(kFirstLoss * effort.loss_sigmas, 2.0 * wanted_loss());
   double cost = problem.evaluate(minimum.state, loss, nullptr);
-  while (minimum.iterations++ < max_iterations && damping < 1e4) {
+  for (; minimum.iterations < effort.max_iterations && !effort.context.stop.stop_requested(); ++minimum.iterations) {
+    if (effort.context.progress) {
+      effort.context.progress({effort.stage, minimum.iterations, effort.max_iterations, ""});
+    }
     BorderedSystem system(minimum.state.knots.size(), problem.border_size());
     problem.evaluate(minimum.state, loss, &system);
     const auto step = solve(std::move(system), damping);
     CalibrationState candidate = step ? problem.moved(minimum.state, *step) : minimum.state;
     const double gain = step ? cost - problem.evaluate(candidate, loss, nullptr) : -1.0;
-    if (!(gain >= 0)) {
+    if (gain >= 0) {
+      minimum.state = std::move(candidate);
+      minimum.is_solved = true;
+      cost -= gain;
+      damping = std::max(1e-9, damping * 0.1);
+    } else {
       damping = std::max(1e-7, damping) * 10;
-      continue;
     }
-    minimum.state = std::move(candidate);
-    minimum.is_solved = true;
-    cost -= gain;
-    damping = std::max(1e-9, damping * 0.1);
-    const bool is_last = loss <= loss_sigmas * 1.01;
-    if (gain > (is_last ? 1e-6 : 1e-3) * cost) continue;
-    const double wanted = std::max(loss_sigmas, bulk());
-    if (loss <= wanted * 1.01) break;
+    const bool is_last = loss <= effort.loss_sigmas * 1.01;
+    const bool is_stuck = damping >= kMostDamping;
+    if (!is_stuck && !(gain >= 0 && gain <= (is_last ? 1e-6 : 1e-3) * cost)) continue;
+    const double wanted = wanted_loss();
+    minimum.is_settled = minimum.is_solved && loss <= wanted * 1.01;
+    if (minimum.is_settled || is_stuck) break;
     loss = std::max(wanted, 0.5 * loss);
     cost = problem.evaluate(minimum.state, loss, nullptr);
   }
-  return minimum;
-}
-
-std::vector<PlacedReading> place_readings(std::span<const LineDetector> detectors, const RigidBody& body,
-                                          std::span<const LineReading> readings) {
-  std::map<int, std::size_t> detector_of, marker_of;
-  for (std::size_t i = 0; i < detectors.size(); ++i) detector_of[detectors[i].id] = i;
-  for (std::size_t i = 0; i < body.markers.size(); ++i) marker_of[body.markers[i].id] = i;
-  std::vector<PlacedReading> placed;
-  for (const LineReading& reading : readings) {
-    const auto d = detector_of.find(reading.detector);
-    const auto m = marker_of.find(reading.marker);
-    if (d == detector_of.end() || m == marker_of.end()) continue;
-    placed.push_back({d->second, m->second, to_seconds(reading.time.time_since_epoch()), reading.value,
-                      reading.sigma > 0 ? reading.sigma : detectors[d->second].sigma});
+  if (effort.context.progress) {
+    effort.context.progress({effort.stage, effort.max_iterations, effort.max_iterations, ""});
   }
-  return placed;
+  return minimum;
 }
 
 bool has_enough(std::span<const LineDetector> detectors, const std::vector<PlacedReading>& readings) {
@@ -107,11 +112,11 @@ ReadingStatistics summarise(const std::vector<double>& residuals, double loss_si
 Eigen::Isometry3d align_reference(const CalibrationProblem& problem, const CalibrationState& state,
                                   const MotionReference& reference) {
   std::vector<Eigen::Vector3d> from, to;
-  for (const ReferencePosition& position : reference.positions) {
+  for (const TimedPosition& position : reference.positions) {
     const auto pose = problem.pose_at(state, to_seconds(position.time.time_since_epoch()));
     if (!pose) continue;
     from.push_back(pose->translation());
-    to.push_back(position.p_reference);
+    to.push_back(position.p);
   }
   const auto fit = align_points(from, to, AlignmentKind::Rigid);
   return fit ? fit->T_target_source : Eigen::Isometry3d::Identity();
@@ -160,9 +165,12 @@ Trajectory motion_of(const CalibrationProblem& problem, const CalibrationState& 
   return motion;
 }
 
-void require_inputs(std::span<const LineDetector> detectors, const RigidBody& body) {
+void require_inputs(std::span<const LineDetector> detectors, const RigidBody& body, const std::string& held) {
   if (detectors.empty()) throw std::invalid_argument("calibrate_detectors: no detectors");
   if (body.markers.empty()) throw std::invalid_argument("calibrate_detectors: the body has no markers");
+  const auto is_held = [&](const LineDetector& detector) { return detector.station == held; };
+  if (held.empty() || std::any_of(detectors.begin(), detectors.end(), is_held)) return;
+  throw std::invalid_argument(fmt::format("calibrate_detectors: no detector is of the held station '{}'", held));
 }
 
 }  // namespace
@@ -183,9 +191,9 @@ void validate(const DetectorCalibrationOptions& o) {
 
 DetectorCalibration calibrate_detectors(std::span<const LineDetector> detectors, const RigidBody& body,
                                         std::span<const LineReading> readings,
-                                        const DetectorCalibrationOptions& options, const MotionReference* reference) {
+                                        const DetectorCalibrationOptions& options, const CalibrationContext& context) {
   validate(options);
-  require_inputs(detectors, body);
+  require_inputs(detectors, body, options.held_station);
   DetectorCalibration result;
   result.body = body;
   result.rig.detectors.assign(detectors.begin(), detectors.end());
@@ -194,28 +202,37 @@ DetectorCalibration calibrate_detectors(std::span<const LineDetector> detectors,
     return result;
   };
   CalibrationState state;
-  state.scene.detectors = result.rig.detectors;
-  for (const BodyMarker& marker : body.markers) state.scene.markers.push_back(marker.p_body);
+  state.scene = scene_of(detectors, body);
   const auto placed = place_readings(detectors, body, readings);
   if (!has_enough(detectors, placed)) return refuse(CalibrationOutcome::TooFewReadings);
 
   DetectorCalibrationOptions held = options;
   held.hold_detectors = true;
   const CalibrationProblem motion_alone(state, placed, held, nullptr);
-  auto knots = start_motion(state.scene, placed, motion_alone.knot_times(), 1.5 * options.knot_interval_s);
+  auto knots =
+      start_motion(state.scene, placed, motion_alone.knot_times(), 1.5 * options.knot_interval_s, context.stop);
+  if (context.stop.stop_requested()) return refuse(CalibrationOutcome::Stopped);
   if (!knots) return refuse(CalibrationOutcome::NoStart);
   state.knots = std::move(*knots);
   const int motion_iterations = options.hold_detectors ? options.max_iterations : kMotionIterations;
-  state = minimise(motion_alone, state, options.loss_sigmas, motion_iterations).state;
-  if (reference) state.T_reference_world = align_reference(motion_alone, state, *reference);
+  const Minimum motion =
+      minimise(motion_alone, state, {options.loss_sigmas, motion_iterations, "following the body", context});
+  if (context.stop.stop_requested()) return refuse(CalibrationOutcome::Stopped);
+  state = motion.state;
+  result.iterations = motion.iterations;
+  result.is_converged = motion.is_settled;
+  if (context.reference) state.T_reference_world = align_reference(motion_alone, state, *context.reference);
 
-  const CalibrationProblem problem(state, placed, options, reference);
+  const CalibrationProblem problem(state, placed, options, context.reference);
   if (!options.hold_detectors) {
-    const Minimum minimum = minimise(problem, state, options.loss_sigmas, options.max_iterations);
+    const Minimum minimum =
+        minimise(problem, state, {options.loss_sigmas, options.max_iterations, "moving the stations", context});
+    if (!minimum.is_solved && context.stop.stop_requested()) return refuse(CalibrationOutcome::Stopped);
     auto covariances = station_covariances(problem, minimum.state, options.loss_sigmas);
     if (!minimum.is_solved || !covariances) return refuse(CalibrationOutcome::Undetermined);
     state = minimum.state;
     result.iterations = minimum.iterations;
+    result.is_converged = minimum.is_settled;
     result.rig = {state.scene.detectors, std::move(*covariances)};
   }
   for (std::size_t i = 0; i < body.markers.size(); ++i) result.body.markers[i].p_body = state.scene.markers[i];

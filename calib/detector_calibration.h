@@ -4,12 +4,15 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <string>
 #include <vector>
 
 #include "calib/body_motion.h"
 #include "camera/detector_rig.h"
 #include "camera/measurement.h"
+#include "core/progress.h"
+#include "geometry/positions.h"
 #include "geometry/rigid_body.h"
 #include "geometry/trajectory.h"
 
@@ -32,12 +35,8 @@ struct DetectorCalibrationOptions {
 void validate(const DetectorCalibrationOptions& options);
 
 /// Where a point of the body was, in a frame of its own: motion capture.
-struct ReferencePosition {
-  Timestamp time{};
-  Eigen::Vector3d p_reference = Eigen::Vector3d::Zero();  ///< m
-};
 struct MotionReference {
-  std::vector<ReferencePosition> positions;
+  std::vector<TimedPosition> positions;
   double sigma_m = 2e-3;  ///< of each coordinate, its clock's error included
 };
 
@@ -54,6 +53,14 @@ enum class CalibrationOutcome {
   TooFewReadings,  ///< fewer than 24 in all, or than 24 of a station
   NoStart,         ///< no pose of the body explains the first readings
   Undetermined,    ///< the body moves too little or is too small, or the stations do not see it at the same times
+  Stopped,         ///< by the user, before the stations were moved
+};
+
+/// What else a calibration goes by, and who watches it.
+struct CalibrationContext {
+  const MotionReference* reference = nullptr;
+  ProgressSink progress;  ///< told of each iteration; the total is the most there may be
+  std::stop_token stop;   ///< ends the work after the iteration at hand, with what it has
 };
 
 struct DetectorCalibration {
@@ -66,17 +73,19 @@ struct DetectorCalibration {
   Eigen::Isometry3d T_reference_world = Eigen::Isometry3d::Identity();
   Eigen::Vector3d p_body_reference = Eigen::Vector3d::Zero();
   int iterations = 0;
+  bool is_converged = true;  ///< false: ended by max_iterations or the stop before the cost had settled
 };
 
 /// Finds where the stations of `detectors` stand from readings of a moving body of known size: a robust bundle over the
 /// poses of all stations but one, the body's motion (cubic between knots, white-noise acceleration), and as options say
-/// factory terms and markers; with a `reference` (null: without), where a point of the body was at times. Starts from
-/// the given poses, which may be off by some degrees; readings of unknown detectors and markers are passed over, wrong
-/// ids are borne (a third of all). Readings in order of time. With an outcome other than Refined the rig is as it was
-/// given. Deterministic. Throws std::invalid_argument for options out of bounds, no detectors or no markers.
+/// factory terms and markers; with a reference, where a point of the body was at times. Starts from the given poses,
+/// which may be off by some degrees; readings of unknown detectors and markers are passed over, wrong ids are borne (a
+/// third of all). Readings in order of time. With an outcome other than Refined the rig is as it was given.
+/// Deterministic. Throws std::invalid_argument for options out of bounds, no detectors, no markers, or a held station
+/// that is none of the detectors'.
 DetectorCalibration calibrate_detectors(std::span<const LineDetector> detectors, const RigidBody& body,
                                         std::span<const LineReading> readings,
                                         const DetectorCalibrationOptions& options = {},
-                                        const MotionReference* reference = nullptr);
+                                        const CalibrationContext& context = {});
 
 }  // namespace alidade

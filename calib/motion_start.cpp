@@ -32,7 +32,8 @@ struct Linearised {
   Eigen::Matrix<double, 1, 6> J;
 };
 
-std::vector<Linearised> linearise(const Scene& scene, std::span<const PlacedReading> readings, const Isometry3d& T) {
+std::vector<Linearised> linearise(const DetectorScene& scene, std::span<const PlacedReading> readings,
+                                  const Isometry3d& T) {
   std::vector<Linearised> rows;
   for (const PlacedReading& reading : readings) {
     const LineDetector& detector = scene.detectors[reading.detector];
@@ -56,7 +57,7 @@ double median_sigmas(const std::vector<Linearised>& rows) {
 }
 
 // The rows without what the median reading of their detector is off by, shrunk by its prior.
-std::vector<Linearised> without_common_offsets(const Scene& scene, std::vector<Linearised> rows) {
+std::vector<Linearised> without_common_offsets(const DetectorScene& scene, std::vector<Linearised> rows) {
   for (std::size_t d = 0; d < scene.detectors.size(); ++d) {
     std::vector<double> sigmas;
     for (const Linearised& row : rows) {
@@ -76,7 +77,7 @@ struct PoseSystem {
   Vector6d g;
 };
 
-PoseSystem build_system(const Scene& scene, const std::vector<Linearised>& rows, const Vector6d& prior,
+PoseSystem build_system(const DetectorScene& scene, const std::vector<Linearised>& rows, const Vector6d& prior,
                         const Vector6d& to_prior) {
   const auto residuals = without_common_offsets(scene, rows);
   const double scale = std::max(3.0, 3.0 * median_sigmas(residuals));
@@ -100,7 +101,7 @@ PoseSystem build_system(const Scene& scene, const std::vector<Linearised>& rows,
 }
 
 // Where the planes of all readings come nearest to meeting, the body taken as a point; Cauchy weights.
-std::optional<Vector3d> find_position(const Scene& scene, std::span<const PlacedReading> readings) {
+std::optional<Vector3d> find_position(const DetectorScene& scene, std::span<const PlacedReading> readings) {
   Vector3d p = Vector3d::Zero();
   for (int iteration = 0; iteration < 15; ++iteration) {
     Eigen::Matrix3d M = Eigen::Matrix3d::Zero();
@@ -137,7 +138,7 @@ std::vector<Eigen::Matrix3d> cube_rotations() {
 
 }  // namespace
 
-std::optional<RoughPose> refine_pose(const Scene& scene, std::span<const PlacedReading> readings,
+std::optional<RoughPose> refine_pose(const DetectorScene& scene, std::span<const PlacedReading> readings,
                                      const Isometry3d& guess, double prior_m, double prior_rad) {
   Isometry3d T = guess;
   Vector6d prior;
@@ -157,7 +158,7 @@ std::optional<RoughPose> refine_pose(const Scene& scene, std::span<const PlacedR
   return RoughPose{T, median_sigmas(without_common_offsets(scene, rows))};
 }
 
-std::optional<RoughPose> find_pose(const Scene& scene, std::span<const PlacedReading> readings) {
+std::optional<RoughPose> find_pose(const DetectorScene& scene, std::span<const PlacedReading> readings) {
   const auto position = find_position(scene, readings);
   if (!position) return std::nullopt;
   std::optional<RoughPose> best;
@@ -172,12 +173,14 @@ std::optional<RoughPose> find_pose(const Scene& scene, std::span<const PlacedRea
   return best;
 }
 
-std::optional<std::vector<MotionKnot>> start_motion(const Scene& scene, std::span<const PlacedReading> readings,
-                                                    std::span<const double> times_s, double window_s) {
+std::optional<std::vector<MotionKnot>> start_motion(const DetectorScene& scene, std::span<const PlacedReading> readings,
+                                                    std::span<const double> times_s, double window_s,
+                                                    const std::stop_token& stop) {
   std::vector<MotionKnot> knots;
   std::optional<RoughPose> pose;
   double usual = 0.0;  // median residual of the poses so far
   for (const double time : times_s) {
+    if (stop.stop_requested()) return std::nullopt;
     const auto earlier = [](const PlacedReading& r, double t) { return r.time_s < t; };
     const auto begin = std::lower_bound(readings.begin(), readings.end(), time - window_s, earlier);
     const auto end = std::lower_bound(begin, readings.end(), time + window_s, earlier);

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "calib/body_motion.h"
@@ -20,7 +21,7 @@ struct PlacedReading {
 };
 
 /// What readings are explained with: detectors and the body's markers.
-struct Scene {
+struct DetectorScene {
   std::vector<LineDetector> detectors;
   std::vector<Eigen::Vector3d> markers;  ///< p_body, m
 };
@@ -33,15 +34,16 @@ struct RoughPose {
 
 /// The pose nearest to `guess` in which the readings are explained best, by robust Gauss–Newton steps; the guess itself
 /// counts with `prior_m` and `prior_rad`. Empty where no reading can be taken there.
-std::optional<RoughPose> refine_pose(const Scene& scene, std::span<const PlacedReading> readings,
+std::optional<RoughPose> refine_pose(const DetectorScene& scene, std::span<const PlacedReading> readings,
                                      const Eigen::Isometry3d& guess, double prior_m, double prior_rad);
 
 /// The same without a guess: from where the planes of all readings meet, and from 24 attitudes.
-std::optional<RoughPose> find_pose(const Scene& scene, std::span<const PlacedReading> readings);
+std::optional<RoughPose> find_pose(const DetectorScene& scene, std::span<const PlacedReading> readings);
 
 /// Knots at `times_s`, each from the readings within `window_s` of it and the knot before.
-/// Empty where the first pose is not found.
-std::optional<std::vector<MotionKnot>> start_motion(const Scene& scene, std::span<const PlacedReading> readings,
-                                                    std::span<const double> times_s, double window_s);
+/// Empty where the first pose is not found, and once a stop is requested.
+std::optional<std::vector<MotionKnot>> start_motion(const DetectorScene& scene, std::span<const PlacedReading> readings,
+                                                    std::span<const double> times_s, double window_s,
+                                                    const std::stop_token& stop = {});
 
 }  // namespace alidade

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "app/options_yaml.h"
+#include "calib/detector_calibration.h"
+#include "calib/window_fit.h"
+
+namespace alidade {
+
+/// What a user may choose about a calibration of detectors.
+struct DetectorCalibrationChoice {
+  DetectorCalibrationOptions solver;
+  WindowOptions windows;
+  double reference_sigma_m = 2e-3;  ///< motion capture under motion, its clock's error included
+};
+
+/// Throws std::invalid_argument naming field, value and bound.
+void validate(const DetectorCalibrationChoice& choice);
+
+/// Binds them to flags and keys of --config. `choice` must outlive `fields`.
+void bind(OptionFields& fields, DetectorCalibrationChoice& choice);
+
+}  // namespace alidade
