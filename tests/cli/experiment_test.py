@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""alidade experiment camera on recordings: what it makes of them, and what it refuses."""
+"""alidade experiment camera on recordings and objects, and experiment body: what they make of it, what they refuse."""
 
 import unittest
 
@@ -73,6 +73,38 @@ class ExperimentOnObject(ProgramTest):
         self.assert_refuses(["experiment", "camera", "--points", "object.ply"], "object.ply")
         self.assert_refuses(["experiment", "camera", "--points", "nothing.ply"], "nothing.ply")
         self.assert_refuses(["experiment", "camera", "--runs", "0"], "runs must be >= 1, got 0")
+
+
+class ExperimentOnBodies(ProgramTest):
+    words = ("experiment", "body", "--frames", "300", "--quiet")
+
+    def test_agrees_with_derivatives_and_other_solvers(self):
+        self.assert_succeeds(*self.words, "--only", "solvers", "-o", "out")
+        result = self.summary("out")["solvers"]
+        self.assertLess(max(result["derivatives"].values()), 1e-9)
+        self.assertLess(max(result["exact"].values()), 1e-12)
+        self.assertLess(max(result["agreement"].values()), 1e-8)
+        for name in ("solvers_1.csv", "options.yaml", "report.html"):
+            self.assertTrue((self.directory / "out" / name).is_file(), name)
+
+    def test_stays_at_the_bound_among_wrong_ids_where_the_paper_fails(self):
+        self.assert_succeeds(*self.words, "--only", "wrong-ids", "-o", "out")
+        result = self.summary("out")["wrong-ids"]["30"]
+        self.assertLess(result["ours"]["position_to_bound"], 1.05)
+        self.assertLess(result["ours"]["worst_m"], 0.005)
+        self.assertGreater(result["paper"]["position_to_bound"], 10)
+        self.assertTrue((self.directory / "out" / "wrong-ids.png").is_file())
+
+    def test_is_not_certain_of_a_wrong_start(self):
+        self.assert_succeeds(*self.words, "--only", "start", "-o", "out")
+        result = self.summary("out")["start"]
+        self.assertEqual(result["any readings, 4 markers"]["certain_wrong"], 0)
+        self.assertGreater(result["any readings, 4 markers"]["certain"], 270)
+        self.assertGreater(result["2+2+2"]["ambiguous"], 270)
+        self.assertEqual(result["2+2+2"]["ambiguous_without_truth"], 0)
+
+    def test_refuses_too_few_frames(self):
+        self.assert_refuses(["experiment", "body", "--frames", "5"], "frames must be >= 100, got 5")
 
 
 if __name__ == "__main__":
