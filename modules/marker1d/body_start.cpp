@@ -16,6 +16,10 @@
 namespace alidade {
 namespace {
 
+constexpr std::size_t kMostSearched = 48;
+constexpr int kMany = 16;
+constexpr double kMostWrongPosesFit = 0.75;  // a share of many readings
+
 // Where planes nearly meet: of all of a small body's markers, whatever they are named.
 Eigen::Vector3d middle_of(std::span<const Plane> planes) {
   Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
@@ -123,9 +127,12 @@ std::vector<BodyCandidate> start_body(const DetectorArray& detectors, const Rigi
     }
   }
   keep_probable(candidates, options.least_log_odds);
-  const bool is_explained = !candidates.empty() && candidates.front().inlier_count == count;
+  const bool is_explained =
+      !candidates.empty() && candidates.front().inlier_count >= (count < kMany ? count : kMostWrongPosesFit * count);
   if (is_explained || constraints.size() < 6) return candidates;
-  const PlaneSearch search = search_pose(constraints);  // some are wrong
+  // Some are wrong. The search takes the body as at rest: of the last readings, which are of about one moment.
+  const auto last = readings.last(std::min(readings.size(), kMostSearched));
+  const PlaneSearch search = search_pose(constraints_of(detectors, body, last, variance_factor));
   for (const RobustPlanePose& found : search.candidates) try_from(found.pose.T_world_body);
   keep_probable(candidates, options.least_log_odds);
   // The one pose left explains a part of the readings; others may explain as many.
