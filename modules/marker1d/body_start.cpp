@@ -64,16 +64,24 @@ bool is_determined(const PlanePose& minimum) {
   return determined_directions(minimum.information) == 6;
 }
 
+MotionState accelerating(MotionState state, const BodyStartOptions& options) {
+  state.covariance.bottomRightCorner<6, 6>() = isotropic_noise(options.acceleration_m_s2, options.acceleration_rad_s2);
+  return state;
+}
+
 MotionState anywhere_near(const Eigen::Isometry3d& T_world_body, Timestamp time, const BodyStartOptions& options) {
-  return resting_state(time, T_world_body, isotropic_noise(1.0, 1.0), options.speed_m_s, options.rate_rad_s);
+  return accelerating(
+      resting_state(time, T_world_body, isotropic_noise(1.0, 1.0), options.speed_m_s, options.rate_rad_s), options);
 }
 
 // Its evidence is that of an update from anywhere near: what fits, and how small a part of the prior the valley is.
 BodyCandidate somewhere_in(const PlaneValley& valley, double chi2, std::size_t count, Timestamp time,
                            const BodyStartOptions& options) {
   const double log_volume = valley.covariance.llt().matrixL().toDenseMatrix().diagonal().array().log().sum();
-  return {resting_state(time, valley.T_world_body, valley.covariance, options.speed_m_s, options.rate_rad_s),
-          log_volume - chi2 / 2, std::vector<bool>(count, true), static_cast<int>(count)};
+  const MotionState resting =
+      resting_state(time, valley.T_world_body, valley.covariance, options.speed_m_s, options.rate_rad_s);
+  return {accelerating(resting, options), log_volume - chi2 / 2, std::vector<bool>(count, true),
+          static_cast<int>(count)};
 }
 
 void keep_probable(std::vector<BodyCandidate>& candidates, double least_log_odds) {

@@ -19,6 +19,7 @@ constexpr double kDropped = 15.0;        // ln of the odds against a candidate t
 constexpr double kDoubtful = 7.0;        // and against one that is still named
 constexpr std::size_t kMostHypotheses = 8;
 constexpr int kMostMisfits = 2;
+constexpr double kLeastOfUsual = 0.5;  // of the readings that usually fit: a batch with fewer does not
 
 double largest_sigma(const Eigen::Matrix3d& covariance) {
   return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly).eigenvalues()(2));
@@ -66,7 +67,8 @@ std::optional<BodyEstimate> BodyTracker::follow(Timestamp time, std::span<const 
   if (!readings.empty() && is_nearly_linear(update.motion.predicted)) {
     share_ += 0.01 * (update.inlier_count / static_cast<double>(readings.size()) - share_);
   }
-  const bool misfit = readings.size() >= 4 && 2 * static_cast<std::size_t>(update.inlier_count) < readings.size();
+  const double least = kLeastOfUsual * share_ * static_cast<double>(readings.size());
+  const bool misfit = readings.size() >= 4 && update.inlier_count < least;
   misfits_ = misfit || is_misfit(update) ? misfits_ + 1 : 0;
   if (!is_sure(hypotheses_.front().state, options_.lost_factor) || misfits_ > kMostMisfits) {
     hypotheses_.clear();
