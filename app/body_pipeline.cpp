@@ -40,6 +40,10 @@ void bind(OptionFields& fields, BodyTrackOptions& o) {
              "Gauss-Newton steps of each phase of an update");
   fields.add("start.speed_m_s", o.ours.start.speed_m_s, "m/s", "standard deviation of an unknown velocity");
   fields.add("start.rate_rad_s", o.ours.start.rate_rad_s, "rad/s", "standard deviation of an unknown turning rate");
+  fields.add("start.acceleration_m_s2", o.ours.start.acceleration_m_s2, "m/s^2",
+             "standard deviation of an unknown one");
+  fields.add("start.acceleration_rad_s2", o.ours.start.acceleration_rad_s2, "rad/s^2",
+             "standard deviation of an unknown one");
   fields.add("start.least_share", o.ours.start.least_share, "", "of the readings that must fit a start");
   fields.add("start.least_log_odds", o.ours.start.least_log_odds, "",
              "against a pose that is left out beside a better one");

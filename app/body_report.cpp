@@ -9,16 +9,15 @@
 #include <nlohmann/json.hpp>
 
 #include "app/body_picture.h"
-#include "core/errors.h"
+#include "app/scene_picture.h"
 #include "geometry/rotation.h"
 #include "io/image_files.h"
-#include "view/renderer.h"
 #include "view/report.h"
-#include "view/viewpoint.h"
 
 namespace alidade {
 namespace {
 
+constexpr ViewAngles kAngles{0.7, 0.45, 1.0};
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 double ratio(double part, double whole) {
@@ -94,24 +93,10 @@ ReportTable residual_table(const BodyRun& run, const std::string& of, const std:
   return table;
 }
 
-std::optional<cv::Mat> draw_scene(BodyRun& run) {
-  const cv::Size size(1500, 1000);
-  try {
-    const Scene scene = scene_of(run);
-    return render(scene, frame_scene(scene, {0.7, 0.45, 1.0}, static_cast<double>(size.width) / size.height), size);
-  } catch (const DeviceError& error) {
-    run.warnings.push_back(fmt::format("no picture of the scene: {}", error.what()));
-    return std::nullopt;
-  }
-}
-
 Report report_of(const BodyRun& run, const std::optional<cv::Mat>& scene, const std::vector<cv::Mat>& plots) {
   Report report;
   report.title = "Body track of " + run.source;
-  for (const std::string& line : table_lines(run)) {
-    const auto colon = line.find(": ");
-    report.summary.push_back({line.substr(0, colon), line.substr(colon + 2), "", Verdict::None, ""});
-  }
+  report.summary = rows_of(table_lines(run));
   report.warnings = run.warnings;
   if (run.fault) report.warnings.push_back("ended early: " + *run.fault);
   if (run.interrupted) report.warnings.emplace_back("interrupted: the observations go on");
@@ -209,7 +194,7 @@ std::vector<Plot> plots_of(const BodyRun& run, std::size_t body) {
 
 void write_body_report(BodyRun& run, const ResultDirectory& directory, const std::vector<std::string>& arguments,
                        const std::string& options_yaml) {
-  const auto scene = draw_scene(run);
+  const auto scene = draw_scene(scene_of(run), kAngles, "the scene", run.warnings);
   if (scene) write_image(directory.path("scene.png"), *scene);
   std::vector<cv::Mat> plots;
   for (std::size_t i = 0; i < run.bodies.size(); ++i) {

@@ -27,6 +27,8 @@ struct ReferenceErrors {
   int answered = 0;              ///< of these, by the estimate with the refined detectors
   Statistics before_m, after_m;  ///< with the detectors as given; refined
   std::optional<Statistics> onboard_m;
+
+  double answered_share() const { return asked > 0 ? static_cast<double>(answered) / asked : 0.0; }
 };
 
 /// What the refined detectors are worth on another recording. They are held; only the motion is estimated anew.

@@ -6,17 +6,15 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "core/errors.h"
+#include "app/scene_picture.h"
 #include "io/camera_file.h"
 #include "io/colmap_model.h"
 #include "io/image_files.h"
 #include "io/map_file.h"
 #include "io/trajectory_file.h"
 #include "view/plot.h"
-#include "view/renderer.h"
 #include "view/report.h"
 #include "view/scene.h"
-#include "view/viewpoint.h"
 
 namespace alidade {
 namespace {
@@ -62,30 +60,19 @@ std::vector<Plot> plots_of(const TrackRecord& record) {
           {"Map points used", "frame", "points", {inliers}}};
 }
 
-std::optional<cv::Mat> draw_scene(TrackRecord& record) {
+std::optional<cv::Mat> draw_track(TrackRecord& record) {
   TrackPicture picture;
   picture.map.points = record.map.points;
   picture.estimate = trajectory_of(record.reports);
   picture.camera = record.camera;
   if (picture.estimate.empty()) return std::nullopt;
-  const cv::Size size(1500, 1000);
-  try {
-    const Scene scene = track_scene(picture);
-    return render(scene, frame_scene(scene, {}, static_cast<double>(size.width) / size.height), size);
-  } catch (const DeviceError& error) {
-    record.warnings.push_back(fmt::format("no picture of the scene: {}", error.what()));
-    return std::nullopt;
-  }
+  return draw_scene(track_scene(picture), {}, "the scene", record.warnings);
 }
 
 Report report_of(const TrackRecord& record, const std::optional<cv::Mat>& scene, const cv::Mat& plots) {
   Report report;
   report.title = "Camera track of " + record.source;
-  for (const std::string& line : table_lines(record)) {
-    const auto colon = line.find(':');
-    report.summary.push_back(
-        {line.substr(0, colon), line.substr(std::min(line.size(), colon + 2)), "", Verdict::None, ""});
-  }
+  report.summary = rows_of(table_lines(record));
   report.warnings = record.warnings;
   if (scene) report.sections.push_back({"Map, path and cameras", {}, {}, {{*scene, "", FigureFormat::Png}}});
   report.sections.push_back({"Frame by frame", {}, {}, {{plots, "", FigureFormat::Png}}});
@@ -181,7 +168,7 @@ void write_track(TrackRecord& record, const ResultDirectory& directory, const st
   write_map_ply(directory.path("map.ply"), record.map);
   std::filesystem::create_directories(directory.path("colmap"));
   write_colmap_model(directory.path("colmap"), record.camera, record.map);
-  const auto scene = draw_scene(record);
+  const auto scene = draw_track(record);
   if (scene) write_image(directory.path("scene.png"), *scene);
   const auto plots = draw_plots(plots_of(record));
   write_image(directory.path("plots.png"), plots);

@@ -46,6 +46,8 @@ struct ReadingStatistics {
   int inlier_count = 0;        ///< within loss_sigmas
   double median_sigmas = 0.0;  ///< of the absolute residuals
   double rms_sigmas = 0.0;     ///< of the inliers' residuals
+
+  double inlier_share() const { return count > 0 ? static_cast<double>(inlier_count) / count : 0.0; }
 };
 
 enum class CalibrationOutcome {

@@ -48,6 +48,8 @@ struct WindowStatistics {
   int largest_fit = 0;               ///< most parameters that a window had
   double median_sigmas = 0.0;        ///< of the absolute residuals of all their readings
   std::optional<double> median_rad;  ///< the same of those that are angles
+
+  double explained_share() const { return windows > 0 ? static_cast<double>(explained) / windows : 0.0; }
 };
 
 /// Fits each window by itself, with the largest of 6, 12 and 18 parameters that it has twice as many readings of (6 at

@@ -29,7 +29,7 @@ BodyCellScores score_cell(const BodyCell& cell) {
   double sum = 0;
   int count = 0;
   for (const auto& bound : recording.bounds) {
-    if (!bound || bound->position_m2 > 1e-4) continue;
+    if (!bound) continue;
     sum += bound->position_m2;
     ++count;
   }

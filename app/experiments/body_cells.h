@@ -18,7 +18,7 @@ struct BodyCell {
 /// What each method made of a cell.
 struct BodyCellScores {
   BodyCell cell;
-  double bound_m = 0.0;  ///< RMS of the frames' bounds, of those that have one below 1 cm
+  double bound_m = 0.0;  ///< RMS of the frames' bounds
   BodyScore paper, paper_backward, ours, smoothed;
 };
 

@@ -33,8 +33,9 @@ BodyRecording record_body(const BodySceneOptions& options) {
   BodyRecording recording{scene.detectors(), scene.bodies().front(), {}, {}};
   while (auto frame = scene.next()) {
     const Eigen::Isometry3d T = pose_in_scene(0, frame->time);
-    recording.bounds.push_back(
-        pose_bound(pose_information(recording.detectors, recording.body, T, right_readings(*frame))));
+    auto bound = pose_bound(pose_information(recording.detectors, recording.body, T, right_readings(*frame)));
+    if (bound && bound->position_m2 > kWorstBound_m * kWorstBound_m) bound.reset();
+    recording.bounds.push_back(bound);
     recording.frames.push_back(std::move(*frame));
   }
   return recording;
@@ -91,7 +92,7 @@ BodyScore score_of(const BodyRecording& recording, const BodyAnswers& answers) {
       nees += error.dot(answers[i]->covariance->llt().solve(error)) / 6.0;
     }
     const auto& bound = recording.bounds[i];
-    if (!bound || bound->position_m2 > kWorstBound_m * kWorstBound_m) continue;
+    if (!bound) continue;
     bounded_m2 += error.head<3>().squaredNorm();
     bounded_rad2 += error.tail<3>().squaredNorm();
     bound_m2 += bound->position_m2;

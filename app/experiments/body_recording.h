@@ -15,7 +15,7 @@ struct BodyRecording {
   std::vector<LineDetector> detectors;
   RigidBody body;
   std::vector<BodySceneFrame> frames;
-  std::vector<std::optional<PoseBound>> bounds;  ///< of each frame's right readings; empty: they leave the pose open
+  std::vector<std::optional<PoseBound>> bounds;  ///< of each frame's right readings, where they tell the pose to 1 cm
 };
 
 BodyRecording record_body(const BodySceneOptions& options);
@@ -40,7 +40,7 @@ struct BodyScore {
   double answered_share = 0.0;
   double rms_m = 0.0, worst_m = 0.0;  ///< of the position, over all answers
   double rms_rad = 0.0;
-  double position_to_bound = 0.0;  ///< RMS over the bound's, where the frame's right readings tell the pose to 1 cm
+  double position_to_bound = 0.0;  ///< RMS over the bound's, of frames that have one
   double rotation_to_bound = 0.0;
   std::optional<double> nees_per_dof;  ///< of methods that tell their covariance
 };

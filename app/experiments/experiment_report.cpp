@@ -4,25 +4,12 @@
 #include <fmt/format.h>
 
 #include "app/result_directory.h"
-#include "core/errors.h"
+#include "app/scene_picture.h"
 #include "io/image_files.h"
-#include "view/renderer.h"
 #include "view/report.h"
 
 namespace alidade {
 namespace {
-
-// Empty on a machine that cannot draw.
-std::optional<cv::Mat> drawn(const ExperimentScene& scene, Report& report) {
-  const cv::Size size(1500, 1000);
-  try {
-    const Scene all = track_scene(scene.picture);
-    return render(all, frame_scene(all, {}, static_cast<double>(size.width) / size.height), size);
-  } catch (const DeviceError& error) {
-    report.warnings.push_back(fmt::format("{} is missing: {}", scene.file, error.what()));
-    return std::nullopt;
-  }
-}
 
 void write_experiment(const ExperimentRecord& record, const std::vector<std::string>& arguments,
                       const std::string& options, const ResultDirectory& directory) {
@@ -47,7 +34,7 @@ void write_experiment(const ExperimentRecord& record, const std::vector<std::str
       shown.figures.push_back({image, figure.caption, FigureFormat::Png});
     }
     for (const ExperimentScene& scene : section.scenes) {
-      const auto image = drawn(scene, report);
+      const auto image = draw_scene(track_scene(scene.picture), {}, scene.file, report.warnings);
       if (!image) continue;
       write_image(directory.path(scene.file), *image);
       shown.figures.push_back({*image, scene.caption, FigureFormat::Png});

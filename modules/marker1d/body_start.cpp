@@ -12,6 +12,7 @@
 #include "geometry/plane_pose_minima.h"
 #include "geometry/plane_pose_search.h"
 #include "geometry/plane_valley.h"
+#include "marker1d/marker_plane.h"
 
 namespace alidade {
 namespace {
@@ -44,12 +45,9 @@ std::vector<PlaneConstraint> constraints_of(const DetectorArray& detectors, cons
   for (const LineReading& r : readings) {
     const LineDetector& detector = detectors.at(r.detector).detector;
     const BodyMarker* marker = find_by_id<BodyMarker>(body.markers, r.marker);
-    const auto plane = plane_near(detector, r.value, middle);
-    const auto projection = project(detector, middle);
-    if (marker == nullptr || !plane || !projection) continue;
-    const double sigma = r.sigma > 0 ? r.sigma : detector.sigma;
-    const double weight = projection->J_value_point.squaredNorm() / (variance_factor * sigma * sigma);
-    of_marker[r.marker].push_back({marker->p_body, *plane, weight});
+    const auto plane = plane_about(detector, r, middle);
+    if (marker == nullptr || !plane) continue;
+    of_marker[r.marker].push_back({marker->p_body, plane->plane_world, plane->weight / variance_factor});
   }
   std::vector<PlaneConstraint> constraints;
   for (const auto& [id, of_one] : of_marker) constraints.insert(constraints.end(), of_one.begin(), of_one.end());

@@ -13,8 +13,8 @@ struct BodyStartOptions {
   BodyUpdateOptions update;
   double speed_m_s = 2.0;  ///< standard deviations of a motion of which nothing is known
   double rate_rad_s = 6.0;
-  double acceleration_m_s2 = 10.0;
-  double acceleration_rad_s2 = 30.0;
+  double acceleration_m_s2 = 5.0;  ///< while readings for a start are gathered
+  double acceleration_rad_s2 = 15.0;
   double least_share = 0.4;  ///< of the readings that must fit, and ten, where not all do
   /// Odds, as a natural logarithm, against a pose that is left out beside a better one.
   double least_log_odds = 18.0;

@@ -16,15 +16,6 @@ double sigma_of(const LineDetector& detector, const LineReading& reading) {
   return sigma;
 }
 
-std::optional<MarkerPlane> plane_about(const LineDetector& detector, const LineReading& reading,
-                                       const Eigen::Vector3d& p_world) {
-  const auto projection = project(detector, p_world);
-  const auto plane = plane_near(detector, reading.value, p_world);
-  if (!projection || !plane) return std::nullopt;
-  const double sigma = sigma_of(detector, reading);
-  return MarkerPlane{0, *plane, projection->J_value_point.squaredNorm() / (sigma * sigma)};
-}
-
 std::optional<MarkerPlane> plane_anywhere(const LineDetector& detector, const LineReading& reading) {
   const auto plane = plane_of(detector, reading.value);
   if (!plane) return std::nullopt;
@@ -33,6 +24,15 @@ std::optional<MarkerPlane> plane_anywhere(const LineDetector& detector, const Li
 }
 
 }  // namespace
+
+std::optional<MarkerPlane> plane_about(const LineDetector& detector, const LineReading& reading,
+                                       const Eigen::Vector3d& p_world) {
+  const auto projection = project(detector, p_world);
+  const auto plane = plane_near(detector, reading.value, p_world);
+  if (!projection || !plane) return std::nullopt;
+  const double sigma = sigma_of(detector, reading);
+  return MarkerPlane{0, *plane, projection->J_value_point.squaredNorm() / (sigma * sigma)};
+}
 
 std::vector<MarkerPlane> marker_planes(std::span<const LineDetector> detectors, const RigidBody& body,
                                        std::span<const LineReading> readings,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view/report.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -156,6 +157,15 @@ std::string command_line(const std::vector<std::string>& arguments) {
 }
 
 }  // namespace
+
+std::vector<ReportRow> rows_of(std::span<const std::string> lines) {
+  std::vector<ReportRow> rows;
+  for (const std::string& line : lines) {
+    const std::size_t colon = std::min(line.find(':'), line.size());
+    rows.push_back({line.substr(0, colon), line.substr(std::min(line.size(), colon + 2)), "", Verdict::None, ""});
+  }
+  return rows;
+}
 
 std::string render_html(const Report& report) {
   std::string html = fmt::format(

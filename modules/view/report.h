@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,9 @@ struct ReportLink {
   std::string file;  ///< path relative to the report
   std::string what;
 };
+
+/// Rows of lines "name: value"; a line without a colon is a name alone.
+std::vector<ReportRow> rows_of(std::span<const std::string> lines);
 
 struct ReportSection {
   std::string title;

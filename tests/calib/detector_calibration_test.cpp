@@ -8,6 +8,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
+#include "datasets/body_scene.h"
 #include "geometry/pose.h"
 #include "geometry/rotation.h"
 
@@ -16,25 +17,10 @@ namespace {
 
 constexpr double kSigma = 1e-4;  // rad
 
-// The scene of the paper's page: three blocks of four detectors, 3 m from the centre.
+// The scene of the paper's page.
 std::vector<LineDetector> three_blocks() {
-  std::vector<LineDetector> detectors;
-  for (int k = 0; k < 3; ++k) {
-    const double azimuth = 2 * std::numbers::pi * k / 3 + 0.3;
-    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-    T.translation() = Eigen::Vector3d(3 * std::cos(azimuth), 3 * std::sin(azimuth), 1.2 + 0.5 * k);
-    const Eigen::Vector3d z = (Eigen::Vector3d(0, 0, 1) - T.translation()).normalized();
-    const Eigen::Vector3d x = Eigen::Vector3d::UnitZ().cross(z).normalized();
-    T.linear() << x, z.cross(x), z;
-    for (int i = 0; i < 4; ++i) {
-      LineDetector d{4 * k + i, "block " + std::to_string(k), FocalLine{}};
-      d.T_world_station = T;
-      d.T_station_detector.linear() = exp_so3({0, 0, i * std::numbers::pi / 4});
-      d.T_station_detector.translation() = Eigen::Vector3d(0.15 * (i - 1.5), 0, 0);
-      d.sigma = kSigma;
-      detectors.push_back(d);
-    }
-  }
+  std::vector<LineDetector> detectors = BodyScene({}).detectors();
+  for (LineDetector& d : detectors) d.sigma = kSigma;
   return detectors;
 }
 
@@ -43,11 +29,7 @@ RigidBody tetrahedron() {
 }
 
 Eigen::Isometry3d true_pose(double t) {
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.translation() =
-      Eigen::Vector3d(0.5 * std::sin(2 * t), 0.4 * std::sin(2.7 * t + 1), 1 + 0.3 * std::sin(3.3 * t + 2));
-  T.linear() = exp_so3({0.8 * std::sin(1.9 * t), 0.7 * std::sin(2.3 * t + 0.5), std::sin(1.4 * t + 1)});
-  return T;
+  return pose_in_scene(0, Timestamp(from_seconds(t)));
 }
 
 struct Recording {
