@@ -88,15 +88,32 @@ Eigen::Isometry3d T_world_block(int block, int blocks) {
   return T;
 }
 
+// Each a little different.
+LineCamera lens_of(int detector) {
+  constexpr int kWidth_px = 2048;
+  return {kWidth_px, 1640.0 + 3.0 * detector, 1023.5 + 5.0 * std::sin(detector), -0.08, 0.02, 0.0};
+}
+
+double sigma_of(const BodySceneOptions& options) {
+  return options.has_lenses ? options.sigma_px : options.sigma_rad;
+}
+
+// Whether the line of pixels is long enough.
+bool is_in_view(const LineModel& model, double value) {
+  const auto* lens = std::get_if<LineCamera>(&model);
+  return !lens || (value >= -0.5 && value <= lens->width - 0.5);
+}
+
 LineDetector make_detector(int block, int place, const BodySceneOptions& options) {
   LineDetector detector;
   detector.id = block * kDetectorsPerBlock + place;
   detector.station = fmt::format("block{}", block + 1);
   detector.model = FocalLine{};
+  if (options.has_lenses) detector.model = lens_of(detector.id);
   detector.T_world_station = T_world_block(block, options.blocks);
   detector.T_station_detector = Eigen::Translation3d((place - 1.5) * kSpacing_m, 0, 0) *
                                 Eigen::AngleAxisd(place * pi / kDetectorsPerBlock, Eigen::Vector3d::UnitZ());
-  if (options.sigma_rad > 0) detector.sigma = options.sigma_rad;
+  if (sigma_of(options) > 0) detector.sigma = sigma_of(options);
   return detector;
 }
 
@@ -139,6 +156,7 @@ void validate(const BodySceneOptions& o) {
   require(o.blocks >= 1 && o.blocks <= 100, "blocks", o.blocks, "1..100");
   require(o.bodies >= 1 && o.bodies <= 100, "bodies", o.bodies, "1..100");
   require(o.sigma_rad >= 0 && o.sigma_rad <= 0.1, "sigma_rad", o.sigma_rad, "0..0.1 rad");
+  require(o.sigma_px >= 0 && o.sigma_px <= 100, "sigma_px", o.sigma_px, "0..100 px");
   require(o.wrong_ids >= 0 && o.wrong_ids <= 1, "wrong_ids", o.wrong_ids, "0..1");
   require(o.occluded >= 0 && o.occluded <= 1, "occluded", o.occluded, "0..1");
   require(o.redrawn >= 0 && o.redrawn <= 1, "redrawn", o.redrawn, "0..1");
@@ -199,13 +217,13 @@ void BodyScene::read_body(int body, BodySceneFrame& frame) {
     for (const BodyMarker& marker : markers) {
       const int count = options_.bodies * options_.markers, turn = detector.id * count + marker.id;
       const Timestamp time = frame.time + from_seconds(options_.skew_s * place_in_frame(turn));
-      const double off = options_.sigma_rad * noise(chance_.noise);
+      const double off = sigma_of(options_) * noise(chance_.noise);
       if (hidden_[static_cast<std::size_t>(detector.id / kDetectorsPerBlock * count + marker.id)]) continue;
       const Eigen::Isometry3d T_world_body = options_.skew_s > 0 ? pose_in_scene(body, time) : T_at_frame;
       const auto projection = project(detector, T_world_body * marker.p_body);
-      if (!projection) continue;
+      if (!projection || !is_in_view(detector.model, projection->value)) continue;
       const int name = name_of(body, marker.id);
-      frame.readings.push_back({time, detector.id, name, projection->value + off, options_.sigma_rad});
+      frame.readings.push_back({time, detector.id, name, projection->value + off, sigma_of(options_)});
       frame.is_right.push_back(name == marker.id);
     }
   }

@@ -4,80 +4,20 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <random>
 #include <stdexcept>
-#include <string>
 
 #include <fmt/format.h>
+#include <opencv2/core/utility.hpp>
 
-#include "geometry/rotation.h"
+#include "core/find_by_id.h"
 
 namespace alidade {
 namespace {
 
 using std::numbers::pi;
 
-constexpr int kBlocks = 3, kDetectorsOfBlock = 4;
-
-// The block looks at (0, 0, 1): x right, y down, z forward.
-Eigen::Isometry3d T_world_block(int block) {
-  const double azimuth = 2.0 * pi * block / kBlocks + 0.3;
-  const Eigen::Vector3d eye(3.0 * std::cos(azimuth), 3.0 * std::sin(azimuth), 1.2 + 0.5 * block);
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  Eigen::Matrix3d R;
-  R.col(2) = (Eigen::Vector3d(0, 0, 1) - eye).normalized();
-  R.col(0) = (-Eigen::Vector3d::UnitZ()).cross(R.col(2)).normalized();
-  R.col(1) = R.col(2).cross(R.col(0));
-  T.linear() = R;
-  T.translation() = eye;
-  return T;
-}
-
-LineDetector make_detector(int block, int k) {
-  LineDetector detector;
-  detector.id = kDetectorsOfBlock * block + k;
-  detector.station = fmt::format("block {}", block);
-  LineCamera lens;
-  lens.width = 2048;
-  lens.f = 1640.0 + 3.0 * detector.id;
-  lens.c = 1023.5 + 5.0 * std::sin(static_cast<double>(detector.id));
-  lens.k1 = -0.08;
-  lens.k2 = 0.02;
-  detector.model = lens;
-  detector.T_world_station = T_world_block(block);
-  detector.T_station_detector =
-      Eigen::Translation3d(0.15 * (k - 1.5), 0.0, 0.0) * Eigen::AngleAxisd(k * pi / 4.0, Eigen::Vector3d::UnitZ());
-  detector.sigma = 0.1;
-  return detector;
-}
-
-// px; empty where the marker's image is not on the line.
-std::optional<double> seen_at(const LineDetector& detector, const Eigen::Vector3d& p_world) {
-  const auto projection = project(detector, p_world);
-  const int width = std::get<LineCamera>(detector.model).width;
-  if (!projection || projection->value < -0.5 || projection->value > width - 0.5) return std::nullopt;
-  return projection->value;
-}
-
 bool is_lit(const MarkerSign& sign, int phase, int row) {
   return sign.code[static_cast<std::size_t>(phase + row) % sign.code.size()] == '1';
-}
-
-// Which markers something stands before, row by row: alike for all detectors of a block.
-std::vector<std::vector<bool>> hidden_markers(const LineImageScene& scene, const LineDetector& detector, int rows) {
-  std::seed_seq seeds{scene.seed, std::uint64_t{77}, static_cast<std::uint64_t>(detector.id / kDetectorsOfBlock)};
-  std::mt19937_64 random(seeds);
-  std::uniform_real_distribution<double> uniform;
-  std::vector<bool> now(scene.signs.size());
-  std::vector<std::vector<bool>> hidden;
-  for (int row = 0; row < rows; ++row) {
-    for (std::size_t m = 0; m < now.size(); ++m) {
-      const double redrawn = uniform(random), covered = uniform(random);
-      if (row == 0 || redrawn < 0.03) now[m] = covered < scene.hidden_share;
-    }
-    hidden.push_back(now);
-  }
-  return hidden;
 }
 
 // Light of a spot of height 1 that falls on pixel i: its Gaussian before the pixels, averaged over the pixel.
@@ -100,26 +40,68 @@ double share(const MarkerSign& sign, int channel, int channels) {
   return colour[static_cast<std::size_t>(channel)] / (colour[0] + colour[1] + colour[2]);
 }
 
-std::vector<double> light_of_row(const LineImageScene& scene, const std::vector<LineImageTruth>& row, int width,
-                                 int channels) {
-  std::vector<double> counts(static_cast<std::size_t>(width * channels));
-  for (int i = 0; i < width * channels; ++i) {
-    counts[static_cast<std::size_t>(i)] = ambient_light(scene.look, i / channels, width);
+int width_of(const LineDetector& detector) {
+  return std::get<LineCamera>(detector.model).width;
+}
+
+// Draws one detector's rows.
+class RowPainter {
+ public:
+  RowPainter(const LineImageScene& scene, const LineDetector& detector)
+      : scene_(scene), detector_(detector.id), width_(width_of(detector)), noise_(noise_of(scene.look)) {
+    const bool is_coloured =
+        std::any_of(scene.signs.begin(), scene.signs.end(), [](const auto& sign) { return sign.colour.has_value(); });
+    channels_ = is_coloured ? 3 : 1;
+    for (int i = 0; i < width_ * channels_; ++i) dark_.push_back(ambient_light(scene.look, i / channels_, width_));
   }
-  const int reach = static_cast<int>(std::ceil(7.0 * scene.look.spot_sigma_px));
-  for (const LineImageTruth& truth : row) {
-    if (!truth.is_lit || truth.is_hidden) continue;
-    const auto sign =
-        std::find_if(scene.signs.begin(), scene.signs.end(), [&](const MarkerSign& s) { return s.id == truth.marker; });
-    const int centre = static_cast<int>(std::lround(truth.position_px));
-    for (int i = std::max(0, centre - reach); i <= std::min(width - 1, centre + reach); ++i) {
-      const double spot = scene.look.full_height * light(truth.position_px, scene.look.spot_sigma_px, i);
-      for (int c = 0; c < channels; ++c) {
-        counts[static_cast<std::size_t>(i * channels + c)] += spot * share(*sign, c, channels);
+
+  cv::Mat blank(int rows) const {
+    constexpr double kHighestIn8Bits = 200.0;
+    const int depth = scene_.look.full_height > kHighestIn8Bits ? CV_16U : CV_8U;
+    return {rows, width_, CV_MAKETYPE(depth, channels_)};
+  }
+
+  void paint(const BodySceneFrame& frame, int row, cv::Mat line) const {
+    std::vector<double> counts = dark_;
+    for (const LineReading& reading : frame.readings) {
+      if (reading.detector == detector_) add_spot(reading, counts);
+    }
+    std::seed_seq seeds{static_cast<int>(scene_.scene.seed), 5, detector_, row};
+    std::mt19937_64 random(seeds);
+    std::normal_distribution<double> normal;
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+      const double sigma = std::sqrt(noise_.read * noise_.read + noise_.shot * counts[i]);
+      const double value = counts[i] + sigma * normal(random);
+      if (line.depth() == CV_16U) {
+        line.ptr<std::uint16_t>(0)[i] = cv::saturate_cast<std::uint16_t>(value);
+      } else {
+        line.ptr<std::uint8_t>(0)[i] = cv::saturate_cast<std::uint8_t>(value);
       }
     }
   }
-  return counts;
+
+ private:
+  void add_spot(const LineReading& reading, std::vector<double>& counts) const {
+    const LineImageLook& look = scene_.look;
+    const MarkerSign& sign = *find_by_id<MarkerSign>(scene_.signs, reading.marker);
+    const int reach = static_cast<int>(std::ceil(7.0 * look.spot_sigma_px));
+    const int centre = static_cast<int>(std::lround(reading.value));
+    for (int i = std::max(0, centre - reach); i <= std::min(width_ - 1, centre + reach); ++i) {
+      const double spot = look.full_height * light(reading.value, look.spot_sigma_px, i);
+      for (int c = 0; c < channels_; ++c) {
+        counts[static_cast<std::size_t>(i * channels_ + c)] += spot * share(sign, c, channels_);
+      }
+    }
+  }
+
+  const LineImageScene& scene_;
+  int detector_, width_, channels_ = 1;
+  LineImageNoise noise_;
+  std::vector<double> dark_;  // counts of a row without spots
+};
+
+void require(bool holds, const std::string& what) {
+  if (!holds) throw std::invalid_argument(what);
 }
 
 }  // namespace
@@ -133,80 +115,86 @@ LineImageNoise noise_of(const LineImageLook& look) {
   return noise;
 }
 
-LineImageScene line_image_scene(const std::vector<std::string>& codes, std::uint64_t seed) {
-  if (codes.size() != 4) throw std::invalid_argument(fmt::format("four codes are wanted, got {}", codes.size()));
-  LineImageScene scene;
-  scene.seed = seed;
-  scene.body.name = "tetrahedron";
-  std::mt19937_64 random(seed);
-  for (int block = 0; block < kBlocks; ++block) {
-    for (int k = 0; k < kDetectorsOfBlock; ++k) scene.detectors.push_back(make_detector(block, k));
+double lone_spot_bound_px(const LineImageLook& look) {
+  const LineImageNoise noise = noise_of(look);
+  const double s = look.spot_sigma_px, dark = look.full_height * (look.ambient + 0.5 * look.gradient);
+  constexpr double kStep_px = 0.1;
+  double information = 0.0;
+  for (double u = -8.0 * s; u <= 8.0 * s; u += kStep_px) {
+    const double spot = look.full_height * std::exp(-0.5 * u * u / (s * s));
+    const double variance = noise.read * noise.read + noise.shot * (dark + spot);
+    information += kStep_px * std::pow(spot * u / (s * s), 2) / variance;
   }
-  constexpr double kCorners[4][3] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
-  std::uniform_real_distribution<double> disturbance(-0.15, 0.15);
-  for (std::size_t m = 0; m < codes.size(); ++m) {
-    const Eigen::Vector3d corner = Eigen::Vector3d(kCorners[m][0], kCorners[m][1], kCorners[m][2]) / std::sqrt(3.0);
-    const Eigen::Vector3d moved(disturbance(random), disturbance(random), disturbance(random));
-    const int id = static_cast<int>(m) + 1;
-    scene.body.markers.push_back({id, 0.15 * (corner + moved)});
-    scene.signs.push_back({id, codes[m], std::nullopt, std::nullopt});
-    scene.phases.push_back(static_cast<int>(random() % codes[m].size()));
-  }
-  return scene;
+  return 1.0 / std::sqrt(information);
 }
 
-Eigen::Isometry3d T_world_body_in_figures(double t) {
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.translation() << 0.5 * std::sin(2.0 * t), 0.4 * std::sin(2.7 * t + 1.0), 1.0 + 0.3 * std::sin(3.3 * t + 2.0);
-  T.linear() = exp_so3({0.8 * std::sin(1.9 * t), 0.7 * std::sin(2.3 * t + 0.5), std::sin(1.4 * t + 1.0)});
-  return T;
-}
-
-std::vector<std::vector<LineImageTruth>> line_image_truth(const LineImageScene& scene, const LineDetector& detector,
-                                                          int rows) {
-  const auto hidden = hidden_markers(scene, detector, rows);
-  std::vector<std::vector<LineImageTruth>> truth(static_cast<std::size_t>(rows));
-  for (int row = 0; row < rows; ++row) {
-    const Eigen::Isometry3d T_world_body = T_world_body_in_figures(row / scene.rate_hz);
-    for (std::size_t m = 0; m < scene.signs.size(); ++m) {
-      const auto position = seen_at(detector, T_world_body * scene.body.markers[m].p_body);
-      if (!position) continue;
-      LineImageTruth seen;
-      seen.marker = scene.signs[m].id;
-      seen.is_lit = is_lit(scene.signs[m], scene.phases[m], row);
-      seen.is_hidden = hidden[static_cast<std::size_t>(row)][m];
-      seen.position_px = *position;
-      truth[static_cast<std::size_t>(row)].push_back(seen);
+LineImageScene line_image_scene(BodySceneOptions options, const std::vector<std::string>& codes) {
+  require(options.wrong_ids == 0, "wrong_ids: in line images wrong ids arise from the images themselves");
+  require(options.skew_s == 0, "skew_s: a row of a line image is exposed at once");
+  options.has_lenses = true;
+  options.sigma_px = 0;
+  const BodyScene scene(options);
+  const std::size_t markers = static_cast<std::size_t>(options.bodies * options.markers);
+  require(codes.size() == markers, fmt::format("{} codes are wanted, got {}", markers, codes.size()));
+  LineImageScene result{options, scene.detectors(), scene.bodies(), {}, {}, {}};
+  std::mt19937_64 random(options.seed);
+  for (const RigidBody& body : scene.bodies()) {
+    for (const BodyMarker& marker : body.markers) {
+      const std::string& code = codes[result.signs.size()];
+      result.signs.push_back({marker.id, code, std::nullopt, std::nullopt});
+      result.phases.push_back(static_cast<int>(random() % code.size()));
     }
   }
-  return truth;
+  return result;
 }
 
-cv::Mat render_line_image(const LineImageScene& scene, const LineDetector& detector, int rows) {
-  const int width = std::get<LineCamera>(detector.model).width;
-  const bool is_coloured = std::any_of(scene.signs.begin(), scene.signs.end(),
-                                       [](const MarkerSign& sign) { return sign.colour.has_value(); });
-  const int channels = is_coloured ? 3 : 1;
-  const bool has_16_bits = scene.look.full_height > 200.0;
-  const auto truth = line_image_truth(scene, detector, rows);
-  const LineImageNoise noise = noise_of(scene.look);
-  std::seed_seq seeds{scene.seed, std::uint64_t{5}, static_cast<std::uint64_t>(detector.id)};
-  std::mt19937_64 random(seeds);
-  std::normal_distribution<double> normal;
-  cv::Mat image(rows, width, CV_MAKETYPE(has_16_bits ? CV_16U : CV_8U, channels));
-  for (int row = 0; row < rows; ++row) {
-    const auto counts = light_of_row(scene, truth[static_cast<std::size_t>(row)], width, channels);
-    for (int i = 0; i < width * channels; ++i) {
-      const double mean = counts[static_cast<std::size_t>(i)];
-      const double value = mean + std::sqrt(noise.read * noise.read + noise.shot * mean) * normal(random);
-      if (has_16_bits) {
-        image.ptr<std::uint16_t>(row)[i] = cv::saturate_cast<std::uint16_t>(value);
-      } else {
-        image.ptr<std::uint8_t>(row)[i] = cv::saturate_cast<std::uint8_t>(value);
+LineImageRecording::LineImageRecording(const LineImageScene& scene) : scene_(scene), frames_(scene.scene) {}
+
+std::optional<LineImageBlock> LineImageRecording::next(int rows) {
+  LineImageBlock block;
+  block.first_row = next_row_;
+  while (static_cast<int>(block.frames.size()) < rows) {
+    auto frame = next_frame(next_row_);
+    if (!frame) break;
+    block.frames.push_back(std::move(*frame));
+    ++next_row_;
+  }
+  if (block.frames.empty()) return std::nullopt;
+  block.images.resize(scene_.detectors.size());
+  cv::parallel_for_(cv::Range(0, static_cast<int>(block.images.size())), [&](const cv::Range& range) {
+    for (int d = range.start; d < range.end; ++d) {
+      const RowPainter painter(scene_, scene_.detectors[static_cast<std::size_t>(d)]);
+      cv::Mat image = painter.blank(static_cast<int>(block.frames.size()));
+      for (int row = 0; row < image.rows; ++row) {
+        painter.paint(block.frames[static_cast<std::size_t>(row)], block.first_row + row, image.row(row));
       }
+      block.images[static_cast<std::size_t>(d)] = image;
     }
+  });
+  return block;
+}
+
+// What is lit, of the detectors that record.
+std::optional<BodySceneFrame> LineImageRecording::next_frame(int row) {
+  const auto all = frames_.next();
+  if (!all) return std::nullopt;
+  const double sigma = lone_spot_bound_px(scene_.look);
+  BodySceneFrame frame{all->time, {}, {}};
+  for (LineReading reading : all->readings) {
+    const MarkerSign* sign = find_by_id<MarkerSign>(scene_.signs, reading.marker);
+    const int phase = scene_.phases[static_cast<std::size_t>(sign - scene_.signs.data())];
+    if (!is_lit(*sign, phase, row) || !find_by_id<LineDetector>(scene_.detectors, reading.detector)) continue;
+    reading.sigma = sigma;
+    frame.readings.push_back(reading);
+    frame.is_right.push_back(true);
   }
-  return image;
+  return frame;
+}
+
+BodySceneFrame disturbed(BodySceneFrame frame, std::mt19937_64& random) {
+  std::normal_distribution<double> normal;
+  for (LineReading& reading : frame.readings) reading.value += reading.sigma * normal(random);
+  return frame;
 }
 
 }  // namespace alidade

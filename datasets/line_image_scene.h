@@ -3,14 +3,14 @@
 
 #include <cstdint>
 #include <optional>
+#include <random>
+#include <string>
 #include <vector>
 
-#include <Eigen/Geometry>
 #include <opencv2/core/mat.hpp>
 
-#include "camera/line_detector.h"
 #include "camera/marker_sign.h"
-#include "geometry/rigid_body.h"
+#include "datasets/body_scene.h"
 
 namespace alidade {
 
@@ -30,40 +30,50 @@ struct LineImageNoise {
 };
 LineImageNoise noise_of(const LineImageLook& look);
 
-/// A body with blinking or coloured markers among linear detectors with lenses.
+/// The Cramér–Rao bound of the position of a spot that stands alone, averaged over its place in the pixel, px.
+double lone_spot_bound_px(const LineImageLook& look);
+
+/// The scene of the simulated figures as its detectors' pixels see it: lenses, and blinking or coloured markers.
 struct LineImageScene {
-  std::vector<LineDetector> detectors;  ///< LineCamera
-  RigidBody body;
-  std::vector<MarkerSign> signs;  ///< of the body's markers, in their order
+  /// With lenses and exact readings; a frame is a row, and what is occluded is dark in it.
+  BodySceneOptions scene;
+  std::vector<LineDetector> detectors;  ///< LineCamera; those that are left out here record nothing
+  std::vector<RigidBody> bodies;
+  std::vector<MarkerSign> signs;  ///< of the bodies' markers
   std::vector<int> phases;        ///< which row of its code each marker shows in row 0, whatever `signs` says of it
-  double rate_hz = 250.0;         ///< rows per second
-  double hidden_share = 0.0;      ///< of the (block, marker) pairs, in bursts; redrawn with probability 0.03 per row
-  std::uint64_t seed = 1;
   LineImageLook look;
 };
 
-/// The scene of the method's figures, with lenses: three blocks of four detectors (ids 0 … 11) of 2048 px and 64° with
-/// some distortion, 3 m away; a tetrahedron of four markers (ids 1 … 4) with these codes, and phases drawn by `seed`;
-/// signs[i].phase is empty. Throws std::invalid_argument where there are not four codes.
-LineImageScene line_image_scene(const std::vector<std::string>& codes, std::uint64_t seed = 1);
+/// `codes`: one per marker, in the order of ids; phases are drawn by scene.seed, and signs[i].phase is empty. Throws
+/// std::invalid_argument where there are not as many codes as markers, where the scene is one of wrong ids or readings
+/// spread in time, which rows of pixels are not, and as BodyScene does.
+LineImageScene line_image_scene(BodySceneOptions scene, const std::vector<std::string>& codes);
 
-/// Where the body of the figures is at `time_s`: 1 m around, all six degrees of freedom.
-Eigen::Isometry3d T_world_body_in_figures(double time_s);
-
-/// What is to be seen of one marker in one row.
-struct LineImageTruth {
-  int marker = 0;
-  bool is_lit = false;     ///< by its code
-  bool is_hidden = false;  ///< by something that stands before it
-  double position_px = 0.0;
+/// Successive rows.
+struct LineImageBlock {
+  int first_row = 0;
+  std::vector<cv::Mat> images;         ///< of each detector: rows × width, 8 or 16 bits, one or three channels
+  std::vector<BodySceneFrame> frames;  ///< of each row: where lit, visible markers are exactly, with sigma the bound
 };
 
-/// The markers in the detector's view in each row 0 … rows − 1.
-std::vector<std::vector<LineImageTruth>> line_image_truth(const LineImageScene& scene, const LineDetector& detector,
-                                                          int rows);
+/// Draws what all detectors record, block by block; nothing is kept of what was given. The same scene gives the same
+/// images.
+class LineImageRecording {
+ public:
+  explicit LineImageRecording(const LineImageScene& scene);
 
-/// The image that the detector records: rows × width, 8 or 16 bits, three channels where the signs have colours. The
-/// same for the same scene and detector.
-cv::Mat render_line_image(const LineImageScene& scene, const LineDetector& detector, int rows);
+  /// The next `rows` rows, fewer at the end, empty after it.
+  std::optional<LineImageBlock> next(int rows);
+
+ private:
+  std::optional<BodySceneFrame> next_frame(int row);
+
+  LineImageScene scene_;
+  BodyScene frames_;
+  int next_row_ = 0;
+};
+
+/// The frame with each reading moved by chance, as its sigma says.
+BodySceneFrame disturbed(BodySceneFrame frame, std::mt19937_64& random);
 
 }  // namespace alidade

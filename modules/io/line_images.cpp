@@ -189,8 +189,8 @@ void write_line_image_set(const Path& directory, const LineImageSet& set) {
   write_file(directory / kIndex, text);
 }
 
-Path line_image_name(int detector) {
-  return fmt::format("detector_{}.png", detector);
+Path line_image_name(int detector, std::optional<int> part) {
+  return part ? fmt::format("detector_{}_{}.png", detector, *part) : fmt::format("detector_{}.png", detector);
 }
 
 }  // namespace alidade

@@ -46,7 +46,7 @@ LineImageSet read_line_image_set(const std::filesystem::path& directory);
 /// (io/image_files.h). Throws DeviceError.
 void write_line_image_set(const std::filesystem::path& directory, const LineImageSet& set);
 
-/// "detector_ID.png".
-std::filesystem::path line_image_name(int detector);
+/// "detector_ID.png", or of a part "detector_ID_PART.png".
+std::filesystem::path line_image_name(int detector, std::optional<int> part = std::nullopt);
 
 }  // namespace alidade

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <opencv2/core/mat.hpp>
@@ -48,14 +49,31 @@ class LineSignal {
   std::int64_t rows_ = 0;
 };
 
-/// A recording of one detector: its readings (px), in order of time.
-struct LineSignalReadings {
-  std::vector<LineReading> readings;
-  LineSignalCounts counts;
-};
+/// The signals of detectors whose rows are exposed together, as one stream of readings. Memory does not grow.
+class LineSignals {
+ public:
+  /// Of each detector; their rate_hz and first_time must be the same. Throws std::invalid_argument where they are not,
+  /// and as LineSignal does.
+  explicit LineSignals(const std::vector<LineSignalOptions>& detectors);
 
-/// All rows of an image, 8 or 16 bits, one or three channels, as successive exposures. Throws as LineSignal; an empty
-/// image has no readings.
-LineSignalReadings read_rows(const cv::Mat& rows, const LineSignalOptions& options);
+  /// The next rows of each detector, in their order: images of as many rows (else std::invalid_argument), an empty one
+  /// where they are lost. Returns, in order of time, the readings that no later row can come before.
+  std::vector<LineReading> read(std::span<const cv::Mat> rows);
+
+  /// The readings that were still kept back. Once, and last.
+  std::vector<LineReading> finish();
+
+  /// Of each detector.
+  std::vector<LineSignalCounts> counts() const;
+
+ private:
+  std::vector<LineReading> release(Timestamp until);
+
+  std::vector<LineSignal> signals_;
+  double rate_hz_;
+  Timestamp first_time_;
+  std::int64_t delay_rows_, next_row_ = 0;
+  std::vector<LineReading> kept_;  // in order of time
+};
 
 }  // namespace alidade

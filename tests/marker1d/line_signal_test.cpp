@@ -10,7 +10,7 @@
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
-#include "datasets/line_image_recording.h"
+#include "datasets/line_image_files.h"
 #include "datasets/line_image_scene.h"
 #include "geometry/pose.h"
 #include "geometry/rotation.h"
@@ -24,15 +24,36 @@ namespace {
 
 constexpr int kRows = 600;
 
+LineImageScene scene_with(const std::vector<std::string>& codes, double occluded = 0.0) {
+  BodySceneOptions options;
+  options.frames = kRows;
+  options.occluded = occluded;
+  return line_image_scene(options, codes);
+}
+
+const LineImageScene& usual_scene() {
+  static const LineImageScene scene = scene_with(blink_codes(4));
+  return scene;
+}
+
+LineImageBlock recorded(const LineImageScene& scene) {
+  return LineImageRecording(scene).next(kRows).value();
+}
+
+const LineImageBlock& usual_recording() {
+  static const LineImageBlock block = recorded(usual_scene());
+  return block;
+}
+
 int row_of(const LineReading& reading, const LineImageScene& scene) {
-  return static_cast<int>(std::lround(to_seconds(reading.time.time_since_epoch()) * scene.rate_hz));
+  return static_cast<int>(std::lround(to_seconds(reading.time.time_since_epoch()) * scene.scene.rate_hz));
 }
 
 LineSignalOptions options_for(const LineImageScene& scene, const LineDetector& detector) {
   const LineImageNoise noise = noise_of(scene.look);
   LineSignalOptions options;
   options.detector = detector.id;
-  options.rate_hz = scene.rate_hz;
+  options.rate_hz = scene.scene.rate_hz;
   options.signs = scene.signs;
   options.peaks.noise = {noise.read, noise.shot};
   return options;
@@ -53,22 +74,23 @@ struct Score {
 };
 
 // Right is a reading within five standard deviations of the marker that it names, which must be lit and in view.
-void add(Score& score, const LineImageScene& scene, const LineDetector& detector, const LineSignalReadings& read) {
-  const auto truth = line_image_truth(scene, detector, kRows);
-  for (int row = 0; row < kRows; ++row) {
-    for (const LineImageTruth& t : truth[static_cast<std::size_t>(row)]) {
-      if (t.is_lit && !t.is_hidden) score.truth[{detector.id, row, t.marker}] = t.position_px;
-    }
-  }
-  score.peaks += read.counts.peaks;
-  for (const LineReading& reading : read.readings) {
+void add(Score& score, const LineImageScene& scene, const std::vector<LineReading>& readings) {
+  for (const LineReading& reading : readings) {
     score.readings.push_back(reading);
-    const auto at = score.truth.find({detector.id, row_of(reading, scene), reading.marker});
+    const auto at = score.truth.find({reading.detector, row_of(reading, scene), reading.marker});
     if (at == score.truth.end() || std::abs(reading.value - at->second) > 5.0 * reading.sigma) continue;
     ++score.right;
     score.error2 += std::pow(reading.value - at->second, 2);
     score.normalised2 += std::pow((reading.value - at->second) / reading.sigma, 2);
   }
+}
+
+Score score_against(const LineImageScene& scene, const LineImageBlock& block) {
+  Score score;
+  for (const BodySceneFrame& frame : block.frames) {
+    for (const LineReading& r : frame.readings) score.truth[{r.detector, row_of(r, scene), r.marker}] = r.value;
+  }
+  return score;
 }
 
 void print(const char* what, const Score& score) {
@@ -85,37 +107,37 @@ LineImageScene thinned(LineImageScene scene, std::size_t step) {
   return scene;
 }
 
-Score read_scene(const char* what, const LineImageScene& scene, bool knows_phases = false) {
-  Score score;
+std::vector<LineReading> read_all(LineSignals& signals, const std::vector<cv::Mat>& images) {
+  auto readings = signals.read(images);
+  const auto last = signals.finish();
+  readings.insert(readings.end(), last.begin(), last.end());
+  return readings;
+}
+
+Score read_scene(const char* what, const LineImageScene& scene, const LineImageBlock& block,
+                 bool knows_phases = false) {
+  std::vector<LineSignalOptions> options;
   for (const LineDetector& detector : scene.detectors) {
-    LineSignalOptions options = options_for(scene, detector);
-    for (std::size_t m = 0; knows_phases && m < scene.signs.size(); ++m) options.signs[m].phase = scene.phases[m];
-    add(score, scene, detector, read_rows(render_line_image(scene, detector, kRows), options));
+    options.push_back(options_for(scene, detector));
+    for (std::size_t m = 0; knows_phases && m < scene.signs.size(); ++m) {
+      options.back().signs[m].phase = scene.phases[m];
+    }
   }
+  LineSignals signals(options);
+  Score score = score_against(scene, block);
+  add(score, scene, read_all(signals, block.images));
+  for (const LineSignalCounts& counts : signals.counts()) score.peaks += counts.peaks;
   print(what, score);
   return score;
 }
 
-const LineImageScene& usual_scene() {
-  static const LineImageScene scene = line_image_scene(blink_codes(4));
-  return scene;
+Score read_scene(const char* what, const LineImageScene& scene, bool knows_phases = false) {
+  return read_scene(what, scene, recorded(scene), knows_phases);
 }
 
 const Score& usual_score() {
-  static const Score score = read_scene("SNR 10, blinking:", usual_scene());
+  static const Score score = read_scene("SNR 10, blinking:", usual_scene(), usual_recording());
   return score;
-}
-
-// The Cramér–Rao bound of a spot that stands alone, px, averaged over its place in the pixel.
-double lone_bound_px(const LineImageLook& look) {
-  const LineImageNoise noise = noise_of(look);
-  const double s = look.spot_sigma_px, light = look.full_height * (look.ambient + 0.5 * look.gradient);
-  double information = 0.0;
-  for (double u = -8.0; u <= 8.0; u += 0.1) {
-    const double spot = look.full_height * std::exp(-0.5 * u * u / (s * s));
-    information += 0.1 * std::pow(spot * u / (s * s), 2) / (noise.read * noise.read + noise.shot * (light + spot));
-  }
-  return 1.0 / std::sqrt(information);
 }
 
 TEST(LineSignal, NamesBlinkingMarkersAtSnrTen) {
@@ -127,7 +149,7 @@ TEST(LineSignal, NamesBlinkingMarkersAtSnrTen) {
 TEST(LineSignal, ReadsToTheCramerRaoBoundAndSaysSo) {
   const Score& score = usual_score();
   const double rms = std::sqrt(score.error2 / static_cast<double>(score.right));
-  EXPECT_LE(rms / lone_bound_px(usual_scene().look), 1.15) << "wanted: 1.3";
+  EXPECT_LE(rms / lone_spot_bound_px(usual_scene().look), 1.15) << "wanted: 1.3";
   EXPECT_NEAR(std::sqrt(score.normalised2 / static_cast<double>(score.right)), 1.0, 0.05);
 }
 
@@ -145,21 +167,35 @@ TEST(LineSignal, NamesMarkersInFaintAndInBrightLight) {
 }
 
 TEST(LineSignal, NamesMarkersThatAreHiddenMostOfTheTime) {
-  LineImageScene scene = thinned(usual_scene(), 2);
-  scene.hidden_share = 0.6;
+  const LineImageScene scene = thinned(scene_with(blink_codes(4), 0.6), 2);
   const Score score = read_scene("SNR 10, 60 % hidden:", scene);
   EXPECT_GE(score.right_share(), 0.995);
   EXPECT_GE(score.identified_share(), 0.95);
 }
 
-TEST(LineSignal, NamesMarkersWhosePhaseIsKnown) {
-  const Score score = read_scene("SNR 10, phases known:", thinned(usual_scene(), 3), true);
+int rows_until_named(const LineSignalOptions& options, const cv::Mat& image) {
+  LineSignal signal(options);
+  int row = 0;
+  while (row < image.rows && signal.read_row(image.row(row), row).empty()) ++row;
+  return row;
+}
+
+TEST(LineSignal, NamesMarkersSoonerWhosePhaseIsKnown) {
+  const LineImageScene scene = thinned(usual_scene(), 3);
+  const LineImageBlock block = recorded(scene);
+  const Score score = read_scene("SNR 10, phases known:", scene, block, true);
   EXPECT_GE(score.right_share(), 0.999);
-  EXPECT_GE(score.identified_share(), 0.97);
+  EXPECT_GE(score.identified_share(), 0.95);
+  for (std::size_t d = 0; d < scene.detectors.size(); ++d) {
+    LineSignalOptions options = options_for(scene, scene.detectors[d]);
+    const int unknown = rows_until_named(options, block.images[d]);
+    for (std::size_t m = 0; m < scene.signs.size(); ++m) options.signs[m].phase = scene.phases[m];
+    EXPECT_LT(rows_until_named(options, block.images[d]), unknown);
+  }
 }
 
 TEST(LineSignal, NamesMarkersByTheirColours) {
-  LineImageScene scene = thinned(line_image_scene({"1", "1", "1", "1"}), 4);
+  LineImageScene scene = thinned(scene_with({"1", "1", "1", "1"}), 4);
   const std::array<std::array<double, 3>, 4> colours{{{1, 0.1, 0.1}, {0.1, 1, 0.1}, {0.1, 0.1, 1}, {1, 1, 1}}};
   for (std::size_t m = 0; m < 4; ++m) scene.signs[m].colour = colours[m];
   scene.look.snr = 20.0;  // of a spot whose light falls into one channel alone
@@ -204,10 +240,10 @@ struct PoseErrors {
   double position_m = 0.0, rotation_rad = 0.0;  // RMS
 };
 
-PoseErrors errors_of(const RowSights& rows, const LineImageScene& scene) {
+PoseErrors errors_of(const RowSights& rows) {
   PoseErrors sum;
   for (const auto& [row, sights] : rows) {
-    const Eigen::Isometry3d truth = T_world_body_in_figures(row / scene.rate_hz);
+    const Eigen::Isometry3d truth = pose_in_scene(0, usual_recording().frames[static_cast<std::size_t>(row)].time);
     const Vector6d error = difference(truth, pose_from(sights, truth));
     sum.position_m += error.head<3>().squaredNorm();
     sum.rotation_rad += error.tail<3>().squaredNorm();
@@ -227,14 +263,14 @@ TEST(LineSignal, GivesPosesAlmostAsGoodAsExactPlanesWithTheSameNoise) {
   const LineImageScene& scene = usual_scene();
   RowSights from_images, from_truth;
   const auto sight = [&](int detector, int marker, double value, double sigma) {
-    const auto m = static_cast<std::size_t>(marker - 1);
-    return Sight{&scene.detectors[static_cast<std::size_t>(detector)], scene.body.markers[m].p_body, value, sigma};
+    const auto m = static_cast<std::size_t>(marker);
+    return Sight{&scene.detectors[static_cast<std::size_t>(detector)], scene.bodies[0].markers[m].p_body, value, sigma};
   };
   for (const LineReading& r : usual_score().readings) {
     from_images[row_of(r, scene)].push_back(sight(r.detector, r.marker, r.value, r.sigma));
   }
   // All lit markers of every row, whether or not they could be told apart, with the noise of a lone spot.
-  const double sigma = lone_bound_px(scene.look);
+  const double sigma = lone_spot_bound_px(scene.look);
   std::mt19937_64 random(8);
   std::normal_distribution<double> normal(0.0, sigma);
   for (const auto& [key, value] : usual_score().truth) {
@@ -244,7 +280,7 @@ TEST(LineSignal, GivesPosesAlmostAsGoodAsExactPlanesWithTheSameNoise) {
   std::erase_if(from_images, [&](const auto& row) { return !from_truth.contains(row.first); });
   ASSERT_EQ(from_images.size(), from_truth.size());
   ASSERT_GT(from_truth.size(), static_cast<std::size_t>(kRows / 2));
-  const PoseErrors images = errors_of(from_images, scene), truth = errors_of(from_truth, scene);
+  const PoseErrors images = errors_of(from_images), truth = errors_of(from_truth);
   std::printf("poses: %.4f mm, %.4f mrad from images; %.4f mm, %.4f mrad from exact values with noise\n",
               1e3 * images.position_m, 1e3 * images.rotation_rad, 1e3 * truth.position_m, 1e3 * truth.rotation_rad);
   EXPECT_LE(images.position_m / truth.position_m, 1.1) << "wanted: 1.2";
@@ -254,7 +290,7 @@ TEST(LineSignal, GivesPosesAlmostAsGoodAsExactPlanesWithTheSameNoise) {
 TEST(LineSignal, ReadsRowByRowWhatItReadsAtOnce) {
   const LineImageScene& scene = usual_scene();
   const LineDetector& detector = scene.detectors[2];
-  const cv::Mat image = render_line_image(scene, detector, 100);
+  const cv::Mat image = usual_recording().images[2].rowRange(0, 100);
   const LineSignalOptions options = options_for(scene, detector);
   LineSignal signal(options);
   std::size_t count = 0;
@@ -265,54 +301,78 @@ TEST(LineSignal, ReadsRowByRowWhatItReadsAtOnce) {
       ++count;
     }
   }
-  const auto all = read_rows(image, options);
-  EXPECT_EQ(count, all.readings.size());
-  EXPECT_EQ(signal.counts().identified, all.counts.identified);
-  EXPECT_TRUE(std::is_sorted(all.readings.begin(), all.readings.end(),
-                             [](const LineReading& a, const LineReading& b) { return a.time < b.time; }));
+  LineSignals signals({options});
+  const auto all = read_all(signals, {image});
+  EXPECT_EQ(count, all.size());
+  EXPECT_EQ(signal.counts().identified, signals.counts()[0].identified);
 }
 
-TEST(LineSignal, ReadsFromFilesWhatItReadsFromImages) {
+TEST(LineSignals, GivesReadingsInOrderOfTimeHoweverTheRowsCome) {
+  const LineImageScene scene = thinned(usual_scene(), 5);
+  std::vector<LineSignalOptions> options;
+  std::vector<cv::Mat> images;
+  for (std::size_t d = 0; d < scene.detectors.size(); ++d) {
+    options.push_back(options_for(scene, scene.detectors[d]));
+    images.push_back(usual_recording().images[5 * d]);
+  }
+  LineSignals at_once(options), in_parts(options);
+  const auto expected = read_all(at_once, images);
+  std::vector<LineReading> readings;
+  for (int first = 0; first < kRows; first += 37) {
+    std::vector<cv::Mat> part;
+    for (const cv::Mat& image : images) part.push_back(image.rowRange(first, std::min(kRows, first + 37)));
+    const auto read = in_parts.read(part);
+    readings.insert(readings.end(), read.begin(), read.end());
+  }
+  const auto last = in_parts.finish();
+  readings.insert(readings.end(), last.begin(), last.end());
+  ASSERT_EQ(readings.size(), expected.size());
+  EXPECT_GT(readings.size(), 1000u);
+  for (std::size_t i = 1; i < readings.size(); ++i) EXPECT_LE(readings[i - 1].time, readings[i].time);
+}
+
+TEST(LineSignals, TakesNoRowsForLostOnes) {
+  const LineImageScene scene = thinned(usual_scene(), 6);
+  LineSignals signals({options_for(scene, scene.detectors[0]), options_for(scene, scene.detectors[1])});
+  const auto readings = read_all(signals, {cv::Mat(), usual_recording().images[6]});
+  ASSERT_FALSE(readings.empty());
+  for (const LineReading& reading : readings) EXPECT_EQ(reading.detector, scene.detectors[1].id);
+  EXPECT_THROW(signals.read({}), std::invalid_argument);
+}
+
+TEST(LineSignals, ReadFromFilesWhatTheyReadFromImages) {
   LineImageScene scene = thinned(usual_scene(), 6);
+  scene.scene.frames = 60;
   const test::TemporaryDirectory folder;
-  write_line_images(scene, 60, folder.path());
+  LineImageFilesWriter writer(scene, folder.path());
+  LineImageRecording recording(scene);
+  while (const auto block = recording.next(40)) writer.write(*block);
+  writer.commit();
   const LineImageSet set = read_line_image_set(folder.path());
   ASSERT_EQ(set.detectors.size(), 2u);
+  const auto direct = recorded(scene);
   for (std::size_t i = 0; i < 2; ++i) {
-    LineSignalOptions options;
-    options.detector = set.detectors[i].detector;
-    options.rate_hz = set.rate_hz;
-    options.first_time = set.first_time;
-    options.signs = set.signs;
-    options.peaks.spot_sigma_px = *set.spot_sigma_px;
-    options.peaks.noise = {set.read_noise, set.counts_per_electron};
-    const auto from_file = read_rows(read_line_image(set.detectors[i].parts[0]), options);
-    const LineDetector& detector = scene.detectors[i];
-    const auto direct = read_rows(render_line_image(scene, detector, 60), options_for(scene, detector));
-    ASSERT_EQ(from_file.readings.size(), direct.readings.size());
-    ASSERT_GT(direct.readings.size(), 100u);
-    for (std::size_t k = 0; k < direct.readings.size(); ++k) {
-      EXPECT_EQ(from_file.readings[k].detector, detector.id);
-      EXPECT_EQ(from_file.readings[k].marker, direct.readings[k].marker);
-      EXPECT_NEAR(from_file.readings[k].value, direct.readings[k].value, 1e-6);
-    }
+    ASSERT_EQ(set.detectors[i].parts.size(), 2u);
+    cv::Mat rows;
+    cv::vconcat(read_line_image(set.detectors[i].parts[0]), read_line_image(set.detectors[i].parts[1]), rows);
+    EXPECT_EQ(cv::norm(rows, direct.images[i], cv::NORM_INF), 0.0);
   }
 }
 
 TEST(LineSignal, GoesOnAfterLostRows) {
   const LineImageScene& scene = usual_scene();
   const LineDetector& detector = scene.detectors[5];
-  const cv::Mat image = render_line_image(scene, detector, kRows);
+  const cv::Mat image = usual_recording().images[5];
   LineSignal signal(options_for(scene, detector));
-  LineSignalReadings read;
+  std::vector<LineReading> read;
   for (int row = 0; row < kRows; ++row) {
     if (row % 50 >= 46 || (row > 300 && row < 340)) continue;
     const auto readings = signal.read_row(image.row(row), row);
-    read.readings.insert(read.readings.end(), readings.begin(), readings.end());
+    read.insert(read.end(), readings.begin(), readings.end());
   }
-  read.counts = signal.counts();
-  Score score;
-  add(score, scene, detector, read);
+  Score score = score_against(scene, usual_recording());
+  add(score, scene, read);
+  score.peaks = signal.counts().peaks;
   EXPECT_GE(score.right_share(), 0.995);
   EXPECT_GE(score.identified_share(), 0.9);
 }
