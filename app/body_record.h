@@ -7,6 +7,7 @@
 
 #include "app/body_files.h"
 #include "app/reading_residuals.h"
+#include "app/reading_source.h"
 #include "app/thinned.h"
 
 namespace alidade {
@@ -54,8 +55,9 @@ struct BodyRun {
 
   // What the command adds:
   std::string source;
-  std::string method;     ///< how poses were found, in words
-  double tracking_s = 0;  ///< reading, tracking and writing
+  std::vector<DetectorSignal> signals;  ///< of line images
+  std::string method;                   ///< how poses were found, in words
+  double tracking_s = 0;                ///< reading, tracking and writing
   bool interrupted = false;
   std::optional<std::string> fault;  ///< what in the observations ended the run before their end
 

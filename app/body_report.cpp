@@ -93,6 +93,23 @@ ReportTable residual_table(const BodyRun& run, const std::string& of, const std:
   return table;
 }
 
+ReportTable signal_table(const BodyRun& run) {
+  ReportTable table{"Spots of light", {"detector", "rows", "spots", "identified"}, {}};
+  for (const DetectorSignal& signal : run.signals) {
+    table.rows.push_back({std::to_string(signal.detector), std::to_string(signal.rows), std::to_string(signal.spots),
+                          fmt::format("{:.2f} %", 100.0 * ratio(signal.identified, signal.spots))});
+  }
+  return table;
+}
+
+nlohmann::json summary_of(const std::vector<DetectorSignal>& signals) {
+  nlohmann::json summary = nlohmann::json::array();
+  for (const DetectorSignal& s : signals) {
+    summary.push_back({{"detector", s.detector}, {"rows", s.rows}, {"spots", s.spots}, {"identified", s.identified}});
+  }
+  return summary;
+}
+
 Report report_of(const BodyRun& run, const std::optional<cv::Mat>& scene, const std::vector<cv::Mat>& plots) {
   Report report;
   report.title = "Body track of " + run.source;
@@ -110,6 +127,14 @@ Report report_of(const BodyRun& run, const std::optional<cv::Mat>& scene, const 
   for (std::size_t i = 0; i < plots.size(); ++i) {
     report.sections.push_back({run.bodies[i].name + " over time", {}, {}, {{plots[i], "", FigureFormat::Png}}});
   }
+  if (!run.signals.empty()) {
+    report.sections.push_back({"Line images",
+                               {"Spots that are not identified lie where markers cross, come before their code was "
+                                "seen once, or are none of the markers."},
+                               {},
+                               {},
+                               {signal_table(run)}});
+  }
   report.sections.push_back({"Residuals",
                              {"Of each reading about the pose right after its batch; RMS, mean and median are of the "
                               "readings that are explained. In units of sigma the RMS is near 1 where the detectors' "
@@ -120,6 +145,7 @@ Report report_of(const BodyRun& run, const std::optional<cv::Mat>& scene, const 
   report.links = {{"poses.csv", "every batch: pose, velocities, standard deviations (body axes), readings"},
                   {"markers.trc", "markers of tracked poses (OpenSim; y is up)"},
                   {"residuals.csv", "residuals by detector and marker"}};
+  if (!run.signals.empty()) report.links.push_back({"readings.csv", "the identified spots"});
   if (run.bodies.size() == 1) report.links.push_back({"trajectory.tum", "tracked poses (TUM), body to world"});
   return report;
 }
@@ -138,6 +164,7 @@ nlohmann::json summary_of(const BodyRun& run) {
                          {"interrupted", run.interrupted},
                          {"warnings", run.warnings}};
   if (run.fault) summary["fault"] = *run.fault;
+  if (!run.signals.empty()) summary["signals"] = summary_of(run.signals);
   summary["bodies"] = nlohmann::json::array();
   for (std::size_t i = 0; i < run.bodies.size(); ++i) {
     summary["bodies"].push_back(summary_of(run, i));

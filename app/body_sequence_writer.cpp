@@ -6,16 +6,17 @@
 
 namespace alidade {
 
-std::string truth_file(const BodyScene& scene, std::size_t body) {
-  return scene.bodies().size() == 1 ? "truth.tum" : "truth_" + scene.bodies()[body].name + ".tum";
+std::string truth_file(const std::vector<RigidBody>& bodies, std::size_t body) {
+  return bodies.size() == 1 ? "truth.tum" : "truth_" + bodies[body].name + ".tum";
 }
 
-BodySequenceWriter::BodySequenceWriter(const ResultDirectory& directory, const BodyScene& scene)
-    : readings_(directory.path("observations.csv"), scene.detectors()) {
-  write_bodies(directory.path("body.csv"), scene.bodies());
-  write_detector_rig(directory.path("detectors.yaml"), {scene.detectors(), {}});
-  for (std::size_t i = 0; i < scene.bodies().size(); ++i) {
-    truth_.push_back(std::make_unique<TumWriter>(directory.path(truth_file(scene, i)), "body"));
+BodySequenceWriter::BodySequenceWriter(const ResultDirectory& directory, const std::vector<LineDetector>& detectors,
+                                       const std::vector<RigidBody>& bodies)
+    : readings_(directory.path("observations.csv"), detectors) {
+  write_bodies(directory.path("body.csv"), bodies);
+  write_detector_rig(directory.path("detectors.yaml"), {detectors, {}});
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    truth_.push_back(std::make_unique<TumWriter>(directory.path(truth_file(bodies, i)), "body"));
   }
 }
 

@@ -16,7 +16,8 @@ namespace alidade {
 /// refuses.
 class BodySequenceWriter {
  public:
-  BodySequenceWriter(const ResultDirectory& directory, const BodyScene& scene);
+  BodySequenceWriter(const ResultDirectory& directory, const std::vector<LineDetector>& detectors,
+                     const std::vector<RigidBody>& bodies);
 
   /// `T_world_body`: one per body.
   void add(const BodySceneFrame& frame, const std::vector<Eigen::Isometry3d>& T_world_body);
@@ -30,6 +31,6 @@ class BodySequenceWriter {
 };
 
 /// The name of the file of a body's true poses.
-std::string truth_file(const BodyScene& scene, std::size_t body);
+std::string truth_file(const std::vector<RigidBody>& bodies, std::size_t body);
 
 }  // namespace alidade

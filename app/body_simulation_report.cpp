@@ -64,7 +64,8 @@ nlohmann::json summary_of(const BodySimulationRecord& record) {
           {"bodies", options.bodies},
           {"markers_per_body", options.markers},
           {"detectors", 4 * options.blocks},
-          {"sigma_rad", options.sigma_rad},
+          {options.has_lenses ? "sigma_px" : "sigma_rad", options.has_lenses ? options.sigma_px : options.sigma_rad},
+          {"line_images", !record.line_image.empty()},
           {"readings", record.readings},
           {"readings_with_wrong_id", record.wrong_ids},
           {"truth", record.truth_files},
@@ -86,12 +87,23 @@ Report report_of(const BodySimulationRecord& record, const std::vector<std::stri
       {"detectors", fmt::format("{} in {} blocks", 4 * scene.blocks, scene.blocks), "", Verdict::None, ""},
       {"readings", fmt::format("{}", record.readings), "", Verdict::None, ""},
       {"named after a wrong marker", fmt::format("{:.2f}", 100 * share_of_wrong(record)), "%", Verdict::None, ""},
-      {"noise", fmt::format("{:g}", 1e3 * scene.sigma_rad), "mrad", Verdict::None, "standard deviation of a reading"}};
+      {"noise", fmt::format("{:.4g}", scene.has_lenses ? scene.sigma_px : 1e3 * scene.sigma_rad),
+       scene.has_lenses ? "px" : "mrad", Verdict::None, "standard deviation of a reading"}};
   if (record.interrupted) report.warnings.emplace_back("interrupted: the sequence is shorter than wanted");
   report.sections = {{"Truth", {}, {}, {{draw_plots(plots_of(record), {960, 420}), "", FigureFormat::Png}}}};
   report.links = {{"body.csv", "the bodies' markers"},
                   {"detectors.yaml", "the detectors and where they stand"},
                   {"observations.csv", "what they read"}};
+  if (!record.line_image.empty()) {
+    constexpr int kShownRows = 128;
+    const cv::Mat first = record.line_image.rowRange(0, std::min(kShownRows, record.line_image.rows));
+    report.sections.push_back({"Line images",
+                               {"The first rows of the first detector, one below the other in order of time. "
+                                "Observations are of lit markers, with the noise of the Cramér–Rao bound of a spot."},
+                               {},
+                               {{first, "", FigureFormat::Png}}});
+    report.links.push_back({"line_images", "what all detectors recorded"});
+  }
   for (const std::string& file : record.truth_files) report.links.push_back({file, "true pose of every frame (TUM)"});
   return report;
 }

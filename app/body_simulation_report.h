@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
+#include <opencv2/core/mat.hpp>
 
 #include "datasets/body_scene.h"
 #include "geometry/trajectory.h"
@@ -23,6 +24,7 @@ struct BodySimulationRecord {
   std::int64_t readings = 0, wrong_ids = 0;  ///< of all frames
   int frames = 0;                            ///< written
   bool interrupted = false;
+  cv::Mat line_image;  ///< the first rows of the first detector, where images were drawn
 
   void add(const BodySceneFrame& frame, const std::vector<Eigen::Isometry3d>& T_world_body);
 };

@@ -2,15 +2,13 @@
 #include "app/calibration_readings.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <limits>
-#include <system_error>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/reading_source.h"
 #include "core/nearest_name.h"
-#include "io/reading_file.h"
 
 namespace alidade {
 namespace {
@@ -40,19 +38,14 @@ bool overlap(const TimeInterval& a, const TimeInterval& b) {
 std::vector<LineReading> read_all(const std::string& path, const DetectorRig& rig, const std::vector<RigidBody>& bodies,
                                   const RunContext& context) {
   constexpr std::size_t kReadingsPerReport = 4096;
-  ReadingReader reader(path, rig.detectors, bodies, context.stop);
-  std::error_code no_size;
-  const auto size = path == "-" ? 0 : std::filesystem::file_size(path, no_size);
-  const auto total_kb = no_size ? 0 : static_cast<std::int64_t>((size + 999) / 1000);
+  const auto source = open_readings(path, rig.detectors, bodies, context.stop);
   std::vector<LineReading> readings;
-  while (const auto reading = reader.next()) {
+  while (const auto reading = source->next()) {
     readings.push_back(*reading);
-    if (readings.size() % kReadingsPerReport == 0) {
-      context.progress({"reading (kB)", (reader.bytes() + 999) / 1000, total_kb, ""});
-    }
+    if (readings.size() % kReadingsPerReport == 0) context.progress(source->progress("reading"));
   }
   if (readings.empty() && !context.stop.stop_requested()) {
-    throw InputError(path == "-" ? "standard input" : path, 0, "holds no reading", "record the moving body");
+    throw InputError(name_of_source(path), 0, "holds no reading", "record the moving body");
   }
   return readings;
 }

@@ -28,8 +28,8 @@ struct IntervalNames {
   std::string source, start_flag, end_flag;
 };
 
-/// All readings of a recording (see ReadingReader), with progress; what was read before a stop. Throws InputError as
-/// the reader does and where there is no reading.
+/// All readings of a recording (see open_readings), with progress; what was read before a stop. Throws InputError as
+/// the source does and where there is no reading.
 std::vector<LineReading> read_all(const std::string& path, const DetectorRig& rig, const std::vector<RigidBody>& bodies,
                                   const RunContext& context);
 

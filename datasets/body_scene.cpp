@@ -109,7 +109,11 @@ LineDetector make_detector(int block, int place, const BodySceneOptions& options
   detector.id = block * kDetectorsPerBlock + place;
   detector.station = fmt::format("block{}", block + 1);
   detector.model = FocalLine{};
-  if (options.has_lenses) detector.model = lens_of(detector.id);
+  if (options.has_lenses) {
+    constexpr double kUsual_px = 0.5;
+    detector.model = lens_of(detector.id);
+    detector.sigma = kUsual_px;
+  }
   detector.T_world_station = T_world_block(block, options.blocks);
   detector.T_station_detector = Eigen::Translation3d((place - 1.5) * kSpacing_m, 0, 0) *
                                 Eigen::AngleAxisd(place * pi / kDetectorsPerBlock, Eigen::Vector3d::UnitZ());

@@ -24,7 +24,7 @@ struct BodySceneOptions {
   int bodies = 1;           ///< all alike but for the disturbance of their corners
   double sigma_rad = 1e-4;  ///< of a reading, about the focal line; 0: exact, and told to be of LineDetector's default
   bool has_lenses = false;  ///< detectors are lines of 2048 px behind lenses of 64° with some distortion
-  double sigma_px = 0.1;    ///< of a reading by them, as sigma_rad
+  double sigma_px = 0.1;    ///< of a reading by them; 0: exact, and told to be of 0.5 px
   double wrong_ids = 0.0;   ///< share of readings that are named after another marker of the same body
   double occluded = 0.0;    ///< probability that a block does not see a marker, once drawn; 0.6 on the paper's page
   double redrawn = 0.03;    ///< probability per frame that it is drawn anew: bursts of 1 / redrawn frames

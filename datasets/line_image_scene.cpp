@@ -106,6 +106,14 @@ void require(bool holds, const std::string& what) {
 
 }  // namespace
 
+void validate(const LineImageLook& look) {
+  require(look.snr >= 1 && look.snr <= 1e4, fmt::format("snr must be 1..10000, got {}", look.snr));
+  require(look.spot_sigma_px >= 0.4 && look.spot_sigma_px <= 100,
+          fmt::format("spot_sigma_px must be 0.4..100 px, got {}", look.spot_sigma_px));
+  require(look.full_height > 0 && look.full_height <= 40000,
+          fmt::format("full_height must be > 0 and <= 40000 counts, got {}", look.full_height));
+}
+
 LineImageNoise noise_of(const LineImageLook& look) {
   const double variance = std::pow(look.full_height / look.snr, 2);
   LineImageNoise noise;
@@ -128,7 +136,9 @@ double lone_spot_bound_px(const LineImageLook& look) {
   return 1.0 / std::sqrt(information);
 }
 
-LineImageScene line_image_scene(BodySceneOptions options, const std::vector<std::string>& codes) {
+LineImageScene line_image_scene(BodySceneOptions options, const std::vector<std::string>& codes,
+                                const LineImageLook& look) {
+  validate(look);
   require(options.wrong_ids == 0, "wrong_ids: in line images wrong ids arise from the images themselves");
   require(options.skew_s == 0, "skew_s: a row of a line image is exposed at once");
   options.has_lenses = true;
@@ -136,7 +146,8 @@ LineImageScene line_image_scene(BodySceneOptions options, const std::vector<std:
   const BodyScene scene(options);
   const std::size_t markers = static_cast<std::size_t>(options.bodies * options.markers);
   require(codes.size() == markers, fmt::format("{} codes are wanted, got {}", markers, codes.size()));
-  LineImageScene result{options, scene.detectors(), scene.bodies(), {}, {}, {}};
+  LineImageScene result{options, scene.detectors(), scene.bodies(), {}, {}, look};
+  for (LineDetector& detector : result.detectors) detector.sigma = lone_spot_bound_px(look);
   std::mt19937_64 random(options.seed);
   for (const RigidBody& body : scene.bodies()) {
     for (const BodyMarker& marker : body.markers) {

@@ -24,6 +24,9 @@ struct LineImageLook {
   double gradient = 0.15;      ///< what comes to it by the last pixel, in waves of a fifth of that
 };
 
+/// Throws std::invalid_argument naming field, value and bound.
+void validate(const LineImageLook& look);
+
 /// Counts per electron and the standard deviation in the dark (counts) by which the images are made.
 struct LineImageNoise {
   double shot = 0.0, read = 0.0;
@@ -46,8 +49,10 @@ struct LineImageScene {
 
 /// `codes`: one per marker, in the order of ids; phases are drawn by scene.seed, and signs[i].phase is empty. Throws
 /// std::invalid_argument where there are not as many codes as markers, where the scene is one of wrong ids or readings
-/// spread in time, which rows of pixels are not, and as BodyScene does.
-LineImageScene line_image_scene(BodySceneOptions scene, const std::vector<std::string>& codes);
+/// spread in time, which rows of pixels are not, and as validate
+/// does.
+LineImageScene line_image_scene(BodySceneOptions scene, const std::vector<std::string>& codes,
+                                const LineImageLook& look = {});
 
 /// Successive rows.
 struct LineImageBlock {

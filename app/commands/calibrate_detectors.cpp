@@ -10,6 +10,7 @@
 #include "app/commands/verbs.h"
 #include "app/detector_calibration_options.h"
 #include "app/detector_calibration_report.h"
+#include "app/reading_source.h"
 #include "datasets/detectors.h"
 #include "io/body_file.h"
 #include "io/position_file.h"
@@ -24,7 +25,9 @@ class CalibrateDetectorsCommand : public Command {
         ->required();
     flags.add_option("DETECTORS", detectors_, "where they stand roughly: our YAML, detectors.json, or a folder")
         ->required();
-    flags.add_option("OBSERVATIONS", observations_, "CSV of readings of the moving body; -: standard input")
+    flags
+        .add_option("OBSERVATIONS", observations_,
+                    "CSV of readings of the moving body; -: standard input; or line images")
         ->required();
     flags.add_option("--body", body_name_, "the body to go by, where the file has several");
     flags.add_option("--start", interval_.start_s, "s, by the observations' clock: pass over what is before");
@@ -40,7 +43,7 @@ class CalibrateDetectorsCommand : public Command {
 
   ExitCode run(const RunContext& context) override {
     DetectorCalibrationRun run;
-    run.source = observations_ == "-" ? "standard input" : observations_;
+    run.source = name_of_source(observations_);
     run.given.rig = read_detectors(detectors_);
     const std::vector<RigidBody> bodies = read_bodies(bodies_);
     run.given.body = choose_body(bodies, body_name_, bodies_);

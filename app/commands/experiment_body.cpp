@@ -19,7 +19,8 @@ struct Part {
 
 const std::vector<Part> kParts{{"accuracy", body_accuracy},   {"wrong-ids", body_wrong_ids},
                                {"occlusion", body_occlusion}, {"solvers", body_solvers},
-                               {"start", body_start},         {"speed", body_speed}};
+                               {"start", body_start},         {"lines", body_lines},
+                               {"speed", body_speed}};
 
 std::vector<std::string> part_names() {
   std::vector<std::string> names;

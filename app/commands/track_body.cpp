@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <chrono>
+#include <filesystem>
 #include <optional>
-#include <system_error>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -9,6 +9,7 @@
 #include "app/body_pipeline.h"
 #include "app/body_report.h"
 #include "app/commands/verbs.h"
+#include "app/reading_source.h"
 #include "datasets/detectors.h"
 #include "io/body_file.h"
 #include "io/detector_file.h"
@@ -17,10 +18,6 @@
 namespace alidade {
 namespace {
 
-std::int64_t in_kilobytes(std::int64_t bytes) {
-  return (bytes + 999) / 1000;
-}
-
 class TrackBodyCommand : public Command {
  public:
   explicit TrackBodyCommand(CLI::App& flags) {
@@ -28,7 +25,10 @@ class TrackBodyCommand : public Command {
         ->required();
     flags.add_option("DETECTORS", detectors_, "line detectors: our YAML, detectors.json of laser sweeps, or a folder")
         ->required();
-    flags.add_option("OBSERVATIONS", observations_, "CSV of readings in order of time; -: standard input")->required();
+    flags
+        .add_option("OBSERVATIONS", observations_,
+                    "CSV of readings in order of time; -: standard input; or a folder of line images")
+        ->required();
     flags.add_option("--start", start_s_, "s, by the observations' clock: pass over what is before");
     flags.add_option("--end", end_s_, "s, by the observations' clock: stop there");
     flags.add_flag("--stream", stream_, "poses as JSON lines on standard output, as soon as they are known");
@@ -38,16 +38,17 @@ class TrackBodyCommand : public Command {
   ExitCode run(const RunContext& context) override {
     const std::vector<RigidBody> bodies = read_bodies(bodies_);
     const DetectorRig rig = read_detectors(detectors_);
-    ReadingReader reader(observations_, rig.detectors, bodies, context.stop);
+    const auto source = open_readings(observations_, rig.detectors, bodies, context.stop);
     ResultDirectory directory(context.output, "track body");
     BodyRecord record(directory, rig.detectors, bodies, detail_of(track_));
     const auto begin = std::chrono::steady_clock::now();
-    const std::optional<InputError> fault = follow(context, reader, rig.detectors, bodies, record);
+    const std::optional<InputError> fault = follow(context, *source, rig.detectors, bodies, directory, record);
     if (fault && !record.run().has_answer()) throw *fault;
 
     BodyRun run = record.commit();
     run.tracking_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    run.source = observations_ == "-" ? "standard input" : observations_;
+    run.source = name_of_source(observations_);
+    run.signals = source->signals();
     run.method = describe(track_);
     run.interrupted = context.stop.stop_requested();
     if (fault) run.fault = fault->what();
@@ -65,32 +66,31 @@ class TrackBodyCommand : public Command {
 
  private:
   // Until the observations end, the user stops it, or a line is wrong: what was wrong, then.
-  std::optional<InputError> follow(const RunContext& context, ReadingReader& reader,
+  std::optional<InputError> follow(const RunContext& context, ReadingSource& source,
                                    const std::vector<LineDetector>& detectors, const std::vector<RigidBody>& bodies,
-                                   BodyRecord& record) const {
+                                   const ResultDirectory& directory, BodyRecord& record) const {
     const PoseDetail detail = detail_of(track_);
     BodyPipeline::LiveSink live;
     if (stream_) {
       live = [&](const std::string& body, const BodyEstimate& e) { context.stream(pose_event(body, e, detail)); };
     }
     BodyPipeline pipeline(detectors, bodies, track_, record, live);
-    std::error_code no_size;
-    const auto size = observations_ == "-" ? 0 : std::filesystem::file_size(observations_, no_size);
-    const auto total = no_size ? 0 : static_cast<std::int64_t>(size);
-    const auto show_progress = [&] {
-      context.progress({"tracking (kB)", in_kilobytes(reader.bytes()), in_kilobytes(total), ""});
-    };
+    std::optional<ReadingWriter> found;  // in images; else they are in a table already
+    if (std::filesystem::is_directory(observations_)) found.emplace(directory.path("readings.csv"), detectors, true);
+    const auto show_progress = [&] { context.progress(source.progress("tracking")); };
     std::optional<InputError> fault;
     try {
-      while (const auto reading = reader.next()) {
+      while (const auto reading = source.next()) {
         if (context.stop.stop_requested() || (end_s_ && to_seconds(reading->time.time_since_epoch()) > *end_s_)) break;
         if (start_s_ && to_seconds(reading->time.time_since_epoch()) < *start_s_) continue;
+        if (found) found->write(*reading);
         if (pipeline.add(*reading)) show_progress();
       }
     } catch (const InputError& error) {
       fault = error;
     }
     pipeline.finish();
+    if (found) found->commit();
     show_progress();
     return fault;
   }

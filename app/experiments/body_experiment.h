@@ -24,6 +24,10 @@ ExperimentSection body_solvers(const ExperimentContext& context);
 /// The pose without a prior: whether what is called certain is right, and how many poses few planes leave.
 ExperimentSection body_start(const ExperimentContext& context);
 
+/// From rendered line images of blinking markers: identities, positions of spots, and poses beside those from exact
+/// planes with the same noise.
+ExperimentSection body_lines(const ExperimentContext& context);
+
 /// The whole loop from a CSV file to poses.
 ExperimentSection body_speed(const ExperimentContext& context);
 

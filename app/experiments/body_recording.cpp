@@ -28,17 +28,22 @@ std::optional<StampedPose> answer_of(const PaperStep& step) {
 
 }  // namespace
 
-BodyRecording record_body(const BodySceneOptions& options) {
-  BodyScene scene(options);
-  BodyRecording recording{scene.detectors(), scene.bodies().front(), {}, {}};
-  while (auto frame = scene.next()) {
-    const Eigen::Isometry3d T = pose_in_scene(0, frame->time);
-    auto bound = pose_bound(pose_information(recording.detectors, recording.body, T, right_readings(*frame)));
+BodyRecording recording_of(std::vector<LineDetector> detectors, RigidBody body, std::vector<BodySceneFrame> frames) {
+  BodyRecording recording{std::move(detectors), std::move(body), std::move(frames), {}};
+  for (const BodySceneFrame& frame : recording.frames) {
+    const Eigen::Isometry3d T = pose_in_scene(0, frame.time);
+    auto bound = pose_bound(pose_information(recording.detectors, recording.body, T, right_readings(frame)));
     if (bound && bound->position_m2 > kWorstBound_m * kWorstBound_m) bound.reset();
     recording.bounds.push_back(bound);
-    recording.frames.push_back(std::move(*frame));
   }
   return recording;
+}
+
+BodyRecording record_body(const BodySceneOptions& options) {
+  BodyScene scene(options);
+  std::vector<BodySceneFrame> frames;
+  while (auto frame = scene.next()) frames.push_back(std::move(*frame));
+  return recording_of(scene.detectors(), scene.bodies().front(), std::move(frames));
 }
 
 PaperAnswers track_by_paper(const BodyRecording& recording) {

@@ -18,6 +18,9 @@ struct BodyRecording {
   std::vector<std::optional<PoseBound>> bounds;  ///< of each frame's right readings, where they tell the pose to 1 cm
 };
 
+/// Adds the bounds to what was recorded of the scene's first body.
+BodyRecording recording_of(std::vector<LineDetector> detectors, RigidBody body, std::vector<BodySceneFrame> frames);
+
 BodyRecording record_body(const BodySceneOptions& options);
 
 /// One per frame; empty where the method does not answer.

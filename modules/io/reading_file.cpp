@@ -95,7 +95,8 @@ struct ReadingReader::State {
   std::string_view cell(int column) const { return cells[static_cast<std::size_t>(column)]; }
 
   [[noreturn]] void refuse_cell(int column, const char* wanted) const {
-    refuse(fmt::format("column '{}': '{}' is not {}", names[static_cast<std::size_t>(column)], cell(column), wanted));
+    refuse(fmt::format("column '{}': '{}' is not {}", names[static_cast<std::size_t>(column)], cell(column), wanted),
+           "correct it or leave the row out");
   }
 
   double number(int column) const {
@@ -182,7 +183,7 @@ struct ReadingReader::State {
     const int found = split_cells(row.text, cells);
     if (found == columns.count) return;
     if (!row.has_end) refuse("the last line is cut off", "was the recording broken off? remove the line");
-    refuse(fmt::format("has {} cells, the header names {}", found, columns.count));
+    refuse(fmt::format("has {} cells, the header names {}", found, columns.count), "correct the row or leave it out");
   }
 };
 

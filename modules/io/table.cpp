@@ -89,7 +89,8 @@ double Table::number(std::size_t row, std::size_t column) const {
     return parse_number(path_, rows_.at(row).line, text(row, column));
   } catch (const InputError&) {
     const std::string& cell = text(row, column);
-    throw error(row, fmt::format("column '{}': '{}' is not a finite number", columns_[column], cell));
+    throw error(row, fmt::format("column '{}': '{}' is not a finite number", columns_[column], cell),
+                "correct it or leave the row out");
   }
 }
 
@@ -98,7 +99,8 @@ std::int64_t Table::integer(std::size_t row, std::size_t column) const {
     return parse_integer(path_, rows_.at(row).line, text(row, column));
   } catch (const InputError&) {
     const std::string& cell = text(row, column);
-    throw error(row, fmt::format("column '{}': '{}' is not a whole number", columns_[column], cell));
+    throw error(row, fmt::format("column '{}': '{}' is not a whole number", columns_[column], cell),
+                "correct it or leave the row out");
   }
 }
 
@@ -116,7 +118,8 @@ Table read_table(const std::filesystem::path& path) {
     rows.push_back({lines[i].number, split_cells(path, lines[i])});
     if (rows.back().fields.size() != columns.size()) {
       throw InputError(path, lines[i].number,
-                       fmt::format("has {} cells, the header names {}", rows.back().fields.size(), columns.size()), "");
+                       fmt::format("has {} cells, the header names {}", rows.back().fields.size(), columns.size()),
+                       "correct the row or leave it out");
     }
   }
   return Table(path, std::move(columns), std::move(rows));

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Where figures are measured: runs the program, keeps what it leaves, finds recordings and other programs."""
 
-import csv
 import dataclasses
 import json
 import os
@@ -11,6 +10,7 @@ import subprocess
 import time
 
 from figure_topics.figure import Failed, Skipped
+from figure_topics.tables import rows_of
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
@@ -92,8 +92,7 @@ def summary(result):
 
 def frames(result):
     """The rows of frames.csv: one per image, with index, state (waiting, tracked, predicted, lost) and reason."""
-    with open(result / "frames.csv", newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
+    return rows_of(result / "frames.csv")
 
 
 def pose_count(trajectory):

@@ -2,12 +2,12 @@
 """marker1d: bodies of the paper page's scene, simulated and tracked by the program, by the seed paper's method and ours;
 `alidade experiment body` in part after part, and the solvers' benchmark."""
 
-import csv
 import shutil
 
 from figure_topics.bench import summary
 from figure_topics.benchmark import least_times
 from figure_topics.figure import Fact, Figure, Section
+from figure_topics.tables import rows_of, write_rows
 
 FRAMES = 10000
 
@@ -74,18 +74,6 @@ def figures(name):
             Figure(f"{name}/worst", "mm", at_most=5 if wrong else None),
             Figure(f"{name}/answered", "%"),
             Figure(f"{name}/nees-per-degree", expected="0.8 to 1.25")]
-
-
-def rows_of(path):
-    with open(path, newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
-
-
-def write_rows(path, rows):
-    with open(path, "w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, fieldnames=rows[0])
-        writer.writeheader()
-        writer.writerows(rows)
 
 
 def alone(bench, recording, body):
@@ -260,6 +248,25 @@ START = Section("start", [
 ], measure_start)
 
 
+def measure_lines(bench):
+    for snr, cell in experiment(bench, "lines").items():
+        yield f"lines/snr-{snr}/ids-right", 100 * cell["ids_right_share"]
+        yield f"lines/snr-{snr}/identified", 100 * cell["identified_share"]
+        yield f"lines/snr-{snr}/position-to-bound", cell["position_to_bound"]
+        yield f"lines/snr-{snr}/pose-to-exact", max(cell["pose_position_to_exact"], cell["pose_rotation_to_exact"])
+
+
+def line_figures(snr):
+    bounded = snr == 10
+    return [Figure(f"lines/snr-{snr}/ids-right", "%", at_least=99.5 if bounded else None),
+            Figure(f"lines/snr-{snr}/identified", "%"),
+            Figure(f"lines/snr-{snr}/position-to-bound", at_most=1.3 if bounded else None),
+            Figure(f"lines/snr-{snr}/pose-to-exact", at_most=1.2 if bounded else None)]
+
+
+LINES = Section("lines", [figure for snr in (5, 10, 20, 100) for figure in line_figures(snr)], measure_lines)
+
+
 def measure_loop(bench):
     result = experiment(bench, "speed")
     yield "loop/paper", result["paper"]["steps_per_s"]
@@ -291,4 +298,4 @@ SPEED = Section("speed", [
 
 
 SECTIONS = [*(Section(name, figures(name), measure(name, words)) for name, words in RECORDINGS),
-            SEVERAL, SOLVERS, ACCURACY, WRONG, OCCLUSION, START, LOOP, SPEED]
+            SEVERAL, SOLVERS, ACCURACY, WRONG, OCCLUSION, START, LINES, LOOP, SPEED]

@@ -27,7 +27,7 @@ TEST(BodySequenceWriter, WritesWhatIsReadBack) {
   std::vector<LineReading> readings;
   {
     ResultDirectory directory(out, "simulate body");
-    BodySequenceWriter writer(directory, scene);
+    BodySequenceWriter writer(directory, scene.detectors(), scene.bodies());
     while (const auto frame = scene.next()) {
       writer.add(*frame, {pose_in_scene(0, frame->time), pose_in_scene(1, frame->time)});
       readings.insert(readings.end(), frame->readings.begin(), frame->readings.end());
@@ -58,9 +58,9 @@ TEST(BodySequenceWriter, WritesWhatIsReadBack) {
 
 TEST(BodySequenceWriter, ASingleBodysTruthHasThePlainName) {
   BodySceneOptions options = small_scene();
-  EXPECT_EQ(truth_file(BodyScene(options), 0), "truth_body1.tum");
+  EXPECT_EQ(truth_file(BodyScene(options).bodies(), 0), "truth_body1.tum");
   options.bodies = 1;
-  EXPECT_EQ(truth_file(BodyScene(options), 0), "truth.tum");
+  EXPECT_EQ(truth_file(BodyScene(options).bodies(), 0), "truth.tum");
 }
 
 }  // namespace

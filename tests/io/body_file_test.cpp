@@ -47,16 +47,18 @@ TEST_F(BodyFile, NamesWhatIsWrong) {
   EXPECT_EQ(message(""), "deck.csv: is empty; its first line must name the columns");
   EXPECT_EQ(message("marker,x_m,y_m,z_m\n"), "deck.csv: holds no markers; give each marker a row");
   EXPECT_EQ(message("marker,x_m,y_m,z\n0,1,2,3\n"), "deck.csv: has no column 'z_m'; did you mean 'x_m'?");
-  EXPECT_EQ(message("marker,x_m,y_m,z_m\n0,1,nan,3\n"), "deck.csv:2: column 'y_m': 'nan' is not a finite number");
+  EXPECT_EQ(message("marker,x_m,y_m,z_m\n0,1,nan,3\n"),
+            "deck.csv:2: column 'y_m': 'nan' is not a finite number; correct it or leave the row out");
   EXPECT_EQ(message("marker,x_m,y_m,z_m\n0,1,2,3\nled,1,2,3\n"),
-            "deck.csv:3: column 'marker': 'led' is not a whole number");
+            "deck.csv:3: column 'marker': 'led' is not a whole number; correct it or leave the row out");
   EXPECT_EQ(message("marker,x_m,y_m,z_m\n0,1,2,3\n0,1,2,4\n"),
             "deck.csv:3: marker 0 is there twice; ids are unique among all bodies");
   EXPECT_EQ(message("body,marker,x_m,y_m,z_m\na,0,1,2,3\nb,0,1,2,4\n"),
             "deck.csv:3: marker 0 is there twice; ids are unique among all bodies");
   EXPECT_EQ(message("body,marker,x_m,y_m,z_m\n,0,1,2,3\n"),
             "deck.csv:2: the body has no name; leave out the column 'body' if there is but one");
-  EXPECT_EQ(message("marker,x_m,y_m,z_m\n0,1,2\n"), "deck.csv:2: has 3 cells, the header names 4");
+  EXPECT_EQ(message("marker,x_m,y_m,z_m\n0,1,2\n"),
+            "deck.csv:2: has 3 cells, the header names 4; correct the row or leave it out");
   EXPECT_EQ(message("marker,x_m,y_m,z_m\n9999999999,1,2,3\n"), "deck.csv:2: 9999999999 is too large for a marker's id");
 }
 

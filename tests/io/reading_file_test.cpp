@@ -87,21 +87,27 @@ TEST_F(ReadingFile, NamesTheRowThatIsWrong) {
   const std::string header = "t_s,detector,marker,angle_raw_rad\n0.1,3,0,0.1\n";
   EXPECT_EQ(message(header + "0.1,3,5,0\n"), "r.csv:3: marker 5 belongs to no body; known are: 0, 1, 12");
   EXPECT_EQ(message(header + "0.1,2,0,0\n"), "r.csv:3: unknown detector 2; known are: 1, 3, 8");
-  EXPECT_EQ(message(header + "0.1,3,0,nan\n"), "r.csv:3: column 'angle_raw_rad': 'nan' is not a finite number");
-  EXPECT_EQ(message(header + "0.1,3,0,inf\n"), "r.csv:3: column 'angle_raw_rad': 'inf' is not a finite number");
-  EXPECT_EQ(message(header + "0.1,3,0,0.1x\n"), "r.csv:3: column 'angle_raw_rad': '0.1x' is not a finite number");
-  EXPECT_EQ(message(header + "nan,3,0,0.1\n"), "r.csv:3: column 't_s': 'nan' is not a time");
-  EXPECT_EQ(message(header + "0.1,3,red,0.1\n"), "r.csv:3: column 'marker': 'red' is not a whole number");
+  EXPECT_EQ(message(header + "0.1,3,0,nan\n"),
+            "r.csv:3: column 'angle_raw_rad': 'nan' is not a finite number; correct it or leave the row out");
+  EXPECT_EQ(message(header + "0.1,3,0,inf\n"),
+            "r.csv:3: column 'angle_raw_rad': 'inf' is not a finite number; correct it or leave the row out");
+  EXPECT_EQ(message(header + "0.1,3,0,0.1x\n"),
+            "r.csv:3: column 'angle_raw_rad': '0.1x' is not a finite number; correct it or leave the row out");
+  EXPECT_EQ(message(header + "nan,3,0,0.1\n"),
+            "r.csv:3: column 't_s': 'nan' is not a time; correct it or leave the row out");
+  EXPECT_EQ(message(header + "0.1,3,red,0.1\n"),
+            "r.csv:3: column 'marker': 'red' is not a whole number; correct it or leave the row out");
   EXPECT_EQ(message(header + "0.0999,3,0,0\n"),
             "r.csv:3: time goes back from 0.100000000 s to 0.099900000 s; sort the readings by time");
   EXPECT_EQ(message(header + "0.1,3,0,\n"),
             "r.csv:3: has no reading of detector 3; it reads angles: 'angle_raw_rad' is wanted");
   EXPECT_EQ(message(header + "0.1,8,0,0.1\n"),
             "r.csv:3: has no reading of detector 8; it reads pixels: 'value_px' is wanted");
-  EXPECT_EQ(message(header + "0.1,3,0\n"), "r.csv:3: has 3 cells, the header names 4");
-  EXPECT_EQ(message(header + "0.1,3,0,1,2\n"), "r.csv:3: has 5 cells, the header names 4");
+  EXPECT_EQ(message(header + "0.1,3,0\n"), "r.csv:3: has 3 cells, the header names 4; correct the row or leave it out");
+  EXPECT_EQ(message(header + "0.1,3,0,1,2\n"),
+            "r.csv:3: has 5 cells, the header names 4; correct the row or leave it out");
   EXPECT_EQ(message("t_s,detector,marker,value_rad,sigma_rad\n0,3,0,0,0\n"),
-            "r.csv:2: column 'sigma_rad': '0' is not > 0");
+            "r.csv:2: column 'sigma_rad': '0' is not > 0; correct it or leave the row out");
 }
 
 TEST_F(ReadingFile, TellsALastLineThatIsCutOff) {
@@ -118,7 +124,8 @@ TEST_F(ReadingFile, RefusesWhatIsNoPlaneOfTheDetector) {
             "r.csv:2: the plane's normal must be of length 1, got 1.01; divide nx, ny, nz, d_m by it");
   EXPECT_EQ(message(header + "0,3,0,0,0,0,1\n"),
             "r.csv:2: the plane's normal must be of length 1, got 0; divide nx, ny, nz, d_m by it");
-  EXPECT_EQ(message(header + "0,3,0,1,0,nan,1\n"), "r.csv:2: column 'nz': 'nan' is not a finite number");
+  EXPECT_EQ(message(header + "0,3,0,1,0,nan,1\n"),
+            "r.csv:2: column 'nz': 'nan' is not a finite number; correct it or leave the row out");
   EXPECT_EQ(message(header + "0,3,0,1,0,0,1.02\n"),
             "r.csv:2: the plane misses the centre of detector 3 by 20.0 mm; give planes of the same detector poses, or "
             "'angle_raw_rad'");

@@ -31,8 +31,9 @@ TEST_F(TableFile, IsReadWithCommentsBlankLinesAndCarriageReturns) {
 
 TEST_F(TableFile, IsRefusedDownToTheLine) {
   EXPECT_EQ(message_reading("# nothing\n\n"), "t.csv: is empty; its first line must name the columns");
-  EXPECT_EQ(message_reading("a,b\n1,2\n\n1,2,3\n"), "t.csv:4: has 3 cells, the header names 2");
-  EXPECT_EQ(message_reading("a,b\n1\n"), "t.csv:2: has 1 cells, the header names 2");
+  EXPECT_EQ(message_reading("a,b\n1,2\n\n1,2,3\n"),
+            "t.csv:4: has 3 cells, the header names 2; correct the row or leave it out");
+  EXPECT_EQ(message_reading("a,b\n1\n"), "t.csv:2: has 1 cells, the header names 2; correct the row or leave it out");
   EXPECT_EQ(message_reading("a,,c\n"), "t.csv:1: column 2 has no name");
   EXPECT_EQ(message_reading("a,b,a\n"), "t.csv:1: two columns are named 'a'");
   EXPECT_EQ(message_reading("a\n\"x\n"), "t.csv:2: a quoted cell does not end at its quote; double quotes in cells");
@@ -41,9 +42,12 @@ TEST_F(TableFile, IsRefusedDownToTheLine) {
 TEST_F(TableFile, NamesTheCellThatIsNoNumber) {
   const Table table = read_table(folder_.write("t.csv", "x_m,t_ns\nabc,1.5\nnan,7\n"));
   const auto message = [&](auto work) { return test::message_of(folder_.path(), work); };
-  EXPECT_EQ(message([&] { table.number(0, 0); }), "t.csv:2: column 'x_m': 'abc' is not a finite number");
-  EXPECT_EQ(message([&] { table.integer(0, 1); }), "t.csv:2: column 't_ns': '1.5' is not a whole number");
-  EXPECT_EQ(message([&] { table.number(1, 0); }), "t.csv:3: column 'x_m': 'nan' is not a finite number");
+  EXPECT_EQ(message([&] { table.number(0, 0); }),
+            "t.csv:2: column 'x_m': 'abc' is not a finite number; correct it or leave the row out");
+  EXPECT_EQ(message([&] { table.integer(0, 1); }),
+            "t.csv:2: column 't_ns': '1.5' is not a whole number; correct it or leave the row out");
+  EXPECT_EQ(message([&] { table.number(1, 0); }),
+            "t.csv:3: column 'x_m': 'nan' is not a finite number; correct it or leave the row out");
   EXPECT_EQ(message([&] { table.column("t_us"); }), "t.csv: has no column 't_us'; did you mean 't_ns'?");
   EXPECT_EQ(message([&] { table.column("colour"); }), "t.csv: has no column 'colour'; known are: x_m, t_ns");
 }
