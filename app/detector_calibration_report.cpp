@@ -66,7 +66,7 @@ void write_residuals(const std::filesystem::path& path, const DetectorCalibratio
 
 Plot residual_plot(const std::string& of, const StatisticsById DetectorCalibration::*statistics,
                    const DetectorCalibrationRun& run) {
-  Plot plot{"Median of the absolute residuals by " + of, of, "sigma", {}, false, true};
+  Plot plot{"Median of the absolute residuals by " + of, of, "sigma", {}, false, true, true};
   for (const NamedStatistics& named : all_statistics(run)) {
     Series series{named.recording + ", " + named.detectors + " detectors", {}, {}, SeriesStyle::Dots, {}};
     for (const auto& [id, s] : named.statistics->*statistics) {
@@ -79,7 +79,7 @@ Plot residual_plot(const std::string& of, const StatisticsById DetectorCalibrati
 }
 
 Plot move_plot(const DetectorCalibrationRun& run, int first, const std::string& title, const std::string& unit) {
-  Plot plot{title, "station, in the file's order (the first is 1)", unit, {}, false, true};
+  Plot plot{title, "station, in the file's order (the first is 1)", unit, {}, false, true, true};
   plot.series = {{"moved by", {}, {}, SeriesStyle::Dots, {}}, {"standard deviation", {}, {}, SeriesStyle::Dots, {}}};
   double place = 0.0;
   for (const StationMove& move : station_moves(run)) {

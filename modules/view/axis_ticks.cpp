@@ -57,7 +57,7 @@ std::vector<Tick> logarithmic_ticks(double low, double high, int most) {
       }
     }
   }
-  return ticks;
+  return ticks.size() < 2 ? linear_ticks(low, high, most) : ticks;
 }
 
 }  // namespace alidade

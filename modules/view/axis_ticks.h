@@ -17,7 +17,7 @@ struct Tick {
 std::vector<Tick> linear_ticks(double low, double high, int wanted);
 
 /// Powers of ten within [low, high], thinned to at most `most`; where there are fewer than two, also 2 and 5 times
-/// them. Throws std::invalid_argument unless 0 < low < high.
+/// them, and where these are too few, linear_ticks. Throws std::invalid_argument unless 0 < low < high.
 std::vector<Tick> logarithmic_ticks(double low, double high, int most);
 
 }  // namespace alidade

@@ -27,7 +27,7 @@ struct Range {
 struct Frame {
   cv::Rect area;  // px
   Range x, y;     // y: of log10 on a logarithmic axis
-  bool log_y = false;
+  bool log_y = false, whole_x = false;
 
   cv::Point2d at(double vx, double vy) const {
     const double v = log_y ? std::log10(vy) : vy;
@@ -62,7 +62,8 @@ void set_ranges(Frame& frame, const Plot& plot) {
   }
   if (x.low > x.high) x = y = {0, 1};
   frame.log_y = plot.log_y;
-  frame.x = widened(x, plot.equal_axes ? 0.05 : 0.01);
+  frame.whole_x = plot.whole_x;
+  frame.x = plot.whole_x ? Range{x.low - 0.5, x.high + 0.5} : widened(x, plot.equal_axes ? 0.05 : 0.01);
   frame.y = widened(y, 0.06);
   // An error that is never negative keeps its zero line.
   if (!plot.log_y && !plot.equal_axes && y.low >= 0 && y.low < 0.4 * y.high) frame.y.low = 0;
@@ -76,7 +77,11 @@ void equalise(Frame& frame) {
 }
 
 std::vector<Tick> x_ticks(const Frame& frame) {
-  return linear_ticks(frame.x.low, frame.x.high, std::clamp(frame.area.width / 95, 2, 12));
+  auto ticks = linear_ticks(frame.x.low, frame.x.high, std::clamp(frame.area.width / 95, 2, 12));
+  if (!frame.whole_x) return ticks;
+  std::erase_if(ticks, [](const Tick& tick) { return tick.value != std::round(tick.value); });
+  for (Tick& tick : ticks) tick.text = fmt::format("{:.0f}", tick.value);
+  return ticks;
 }
 
 std::vector<Tick> y_ticks(const Frame& frame) {

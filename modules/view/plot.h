@@ -28,6 +28,7 @@ struct Plot {
   std::vector<Series> series;
   bool equal_axes = false;  ///< one unit has the same length on both axes
   bool log_y = false;
+  bool whole_x = false;  ///< x counts or numbers things: no ticks between them
 };
 
 /// Draws a plot as a BGR picture (CV_8UC3) of `size` px, at least 160×120; without any finite value, the empty axes.

@@ -47,6 +47,7 @@ TEST(LogarithmicTicks, ArePowersOfTenOrFinerWhereThereAreTooFew) {
   EXPECT_EQ(texts(logarithmic_ticks(0.003, 200, 6)), (std::vector<std::string>{"0.01", "0.1", "1", "10", "100"}));
   EXPECT_EQ(texts(logarithmic_ticks(0.003, 200, 3)), (std::vector<std::string>{"0.01", "1", "100"}));
   EXPECT_EQ(texts(logarithmic_ticks(3, 30, 6)), (std::vector<std::string>{"5", "10", "20"}));
+  EXPECT_EQ(texts(logarithmic_ticks(0.61, 0.66, 3)), (std::vector<std::string>{"0.62", "0.64", "0.66"}));
 }
 
 TEST(Ticks, RefuseAnEmptyOrImpossibleRange) {
