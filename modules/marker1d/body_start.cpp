@@ -82,6 +82,12 @@ BodyCandidate somewhere_in(const PlaneValley& valley, double chi2, std::size_t c
           static_cast<int>(count)};
 }
 
+bool is_about(const MotionState& state, const Eigen::Isometry3d& T_world_body) {
+  constexpr double kFarthest = 25.0;  // χ² of six degrees of freedom; an update's optimum is not quite that of planes
+  const Vector6d off = difference(state.T_world_body, T_world_body);
+  return off.dot(state.covariance.topLeftCorner<6, 6>().ldlt().solve(off)) < kFarthest;
+}
+
 void keep_probable(std::vector<BodyCandidate>& candidates, double least_log_odds) {
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const BodyCandidate& a, const BodyCandidate& b) { return a.log_evidence > b.log_evidence; });
@@ -125,7 +131,13 @@ std::vector<BodyCandidate> start_body(const DetectorArray& detectors, const Rigi
   const std::vector<PlaneConstraint> constraints = constraints_of(detectors, body, readings, variance_factor);
   for (const PlanePose& minimum : minima_of(constraints)) {
     if (is_determined(minimum)) {
+      const std::size_t before = candidates.size();
       try_from(minimum.T_world_body);
+      const bool is_held = candidates.size() > before && is_about(candidates.back().state, minimum.T_world_body);
+      if (!is_held && minimum.chi2 < options.update.gate_chi2) {  // so blunt that the steps of an update leave it
+        const PlaneValley itself{minimum.T_world_body, minimum.information.inverse()};
+        candidates.push_back(somewhere_in(itself, minimum.chi2, readings.size(), time, options));
+      }
     } else if (minimum.chi2 < options.update.gate_chi2) {
       if (const auto valley = follow_valley(constraints, minimum)) {
         candidates.push_back(somewhere_in(*valley, minimum.chi2, readings.size(), time, options));
