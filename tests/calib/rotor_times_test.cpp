@@ -88,7 +88,7 @@ double seconds_of(const LineReading& reading) {
 
 // Up to a shift that all have in common.
 TEST(RotorTimes, AreThoseAtWhichTheSweepsPassed) {
-  const auto recorded = record(false, 40.0, 0.989);
+  const auto recorded = record(false, 25.0, 0.989);
   const auto found = time_by_rotors(two_stations(), readings_of(recorded));
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->clock_ratio, 0.989, 1e-5);
@@ -116,7 +116,7 @@ TEST(RotorTimes, AreThoseAtWhichTheSweepsPassed) {
 TEST(RotorTimes, LeaveReadingsOfOtherDetectorsAlone) {
   auto detectors = two_stations();
   detectors.push_back({9, "line", FocalLine{}});
-  auto readings = readings_of(record(false, 40.0, 0.989));
+  auto readings = readings_of(record(false, 25.0, 0.989));
   const LineReading other{Timestamp(from_seconds(seconds_of(readings[100]))), 9, 0, 0.123, 0.0};
   readings.insert(readings.begin() + 101, other);
   const auto found = time_by_rotors(detectors, readings);
@@ -128,7 +128,7 @@ TEST(RotorTimes, LeaveReadingsOfOtherDetectorsAlone) {
 }
 
 TEST(RotorTimes, AreNotAskedWhereStampsAgreeWithThem) {
-  EXPECT_FALSE(time_by_rotors(two_stations(), readings_of(record(true, 40.0, 1.0))));
+  EXPECT_FALSE(time_by_rotors(two_stations(), readings_of(record(true, 25.0, 1.0))));
 }
 
 TEST(RotorTimes, AreEmptyWithTooLittleToGoBy) {
@@ -136,11 +136,11 @@ TEST(RotorTimes, AreEmptyWithTooLittleToGoBy) {
   EXPECT_FALSE(time_by_rotors(two_stations(), readings_of(record(false, 15.0, 0.989))));
   auto one_station = two_stations();
   one_station.resize(2);
-  EXPECT_FALSE(time_by_rotors(one_station, readings_of(record(false, 40.0, 0.989))));
+  EXPECT_FALSE(time_by_rotors(one_station, readings_of(record(false, 25.0, 0.989))));
 }
 
 TEST(RotorTimes, AreEmptyForPeriodsOfNoChannel) {
-  auto readings = readings_of(record(false, 40.0, 0.989));
+  auto readings = readings_of(record(false, 25.0, 0.989));
   for (LineReading& reading : readings) reading.time = Timestamp(from_seconds(1.003 * seconds_of(reading)));
   EXPECT_FALSE(time_by_rotors(two_stations(), readings));
 }
