@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "app/reading_source.h"
+#include "calib/rotor_times.h"
 #include "core/nearest_name.h"
 
 namespace alidade {
@@ -48,6 +49,18 @@ std::vector<LineReading> read_all(const std::string& path, const DetectorRig& ri
     throw InputError(name_of_source(path), 0, "holds no reading", "record the moving body");
   }
   return readings;
+}
+
+std::vector<LineReading> repair_times(std::vector<LineReading> readings, const DetectorRig& rig,
+                                      const std::string& source, std::vector<std::string>& warnings) {
+  auto timed = time_by_rotors(rig.detectors, readings);
+  if (!timed) return readings;
+  warnings.push_back(
+      fmt::format("{}: some readings were stamped up to {:.1f} ms later than others; each has the time at which its "
+                  "sweep passed, by "
+                  "the rotors' known periods, of whose seconds the recording's clock counts {:.5f}",
+                  source, 1e3 * timed->delay_range_s, timed->clock_ratio));
+  return std::move(timed->readings);
 }
 
 std::vector<LineReading> take_interval(const std::vector<LineReading>& readings, const TimeInterval& interval,

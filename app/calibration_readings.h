@@ -33,6 +33,11 @@ struct IntervalNames {
 std::vector<LineReading> read_all(const std::string& path, const DetectorRig& rig, const std::vector<RigidBody>& bodies,
                                   const RunContext& context);
 
+/// The same with the times that the rotors of laser sweeps give them, where that repairs anything (see time_by_rotors);
+/// what it did is added to `warnings`.
+std::vector<LineReading> repair_times(std::vector<LineReading> readings, const DetectorRig& rig,
+                                      const std::string& source, std::vector<std::string>& warnings);
+
 /// The readings within an interval. Throws InputError where there is none, telling what the recording spans.
 std::vector<LineReading> take_interval(const std::vector<LineReading>& readings, const TimeInterval& interval,
                                        const IntervalNames& names);

@@ -37,6 +37,7 @@ void bind(OptionFields& fields, DetectorCalibrationChoice& choice) {
   fields.add("term_sigma.ogeemag", t.ogeemag, "rad", "as phase");
   fields.add("term_sigma.ogeephase", t.ogeephase, "rad", "as phase");
   fields.add("reference_sigma_m", choice.reference_sigma_m, "m", "of each coordinate of --reference");
+  fields.add("rotor_times", choice.rotor_times, "", "laser sweeps that were stamped late get their rotors' times");
   fields.add("window.length_s", choice.windows.window_s, "s", "of the windows that verification fits one by one");
   fields.add("window.least_readings", choice.windows.least_readings, "", "a window with fewer is passed over");
   fields.add("window.explained_sigmas", choice.windows.explained_sigmas, "", "a reading that near is explained");

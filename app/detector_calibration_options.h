@@ -12,6 +12,7 @@ struct DetectorCalibrationChoice {
   DetectorCalibrationOptions solver;
   WindowOptions windows;
   double reference_sigma_m = 2e-3;  ///< motion capture under motion, its clock's error included
+  bool rotor_times = true;          ///< of laser sweeps that were stamped late (see time_by_rotors)
 };
 
 /// Throws std::invalid_argument naming field, value and bound.

@@ -76,8 +76,14 @@ SweepTerms read_factory_terms(const Path& path, const YAML::Node& detector, Syst
 
 LineModel make_model(System system, int sweep, const SweepTerms& terms) {
   if (system == System::First) return Lighthouse1{sweep, terms};
-  if (system == System::Second) return Lighthouse2{sweep, terms};
   return Lighthouse2Full{sweep, terms};
+}
+
+// The full model's axes (x right, y up, z back) in a station frame whose x looks forward and whose z points up.
+Eigen::Matrix3d forward_is_x() {
+  Eigen::Matrix3d R;
+  R << 0, 0, -1, -1, 0, 0, 0, 1, 0;
+  return R;
 }
 
 void require_kind(const Path& path, const YAML::Node& detector, System system) {
@@ -119,6 +125,7 @@ LineDetector read_detector(const Path& path, const YAML::Node& node, System syst
   require_kind(path, node, system);
   detector.model = make_model(system, sweep, read_factory_terms(path, node, system));
   detector.T_world_station = read_station_pose(path, node);
+  if (system == System::Second) detector.T_station_detector.linear() = forward_is_x();
   detector.sigma = system == System::SecondFull ? 3e-4 : 1e-4;
   if (const YAML::Node line = node["focal_line"]) require_focal_line(path, line, detector, sweep);
   return detector;

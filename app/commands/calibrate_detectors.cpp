@@ -48,9 +48,9 @@ class CalibrateDetectorsCommand : public Command {
     const std::vector<RigidBody> bodies = read_bodies(bodies_);
     run.given.body = choose_body(bodies, body_name_, bodies_);
     require_station(run.given.rig, choice_.solver.held_station, detectors_);
-    const auto recording = read_all(observations_, run.given.rig, bodies, context);
+    const auto recording = read_recording(observations_, run, bodies, context);
     const auto readings = take_interval(recording, interval_, {run.source, "--start", "--end"});
-    const std::optional<VerificationData> verification = read_verification(recording, run, bodies, context);
+    const auto verification = read_verification(recording, run, bodies, context);
     const std::optional<MotionReference> reference = read_reference(readings);
     warn_of_overlap(context);
 
@@ -73,14 +73,20 @@ class CalibrateDetectorsCommand : public Command {
   }
 
  private:
+  std::vector<LineReading> read_recording(const std::string& path, DetectorCalibrationRun& run,
+                                          const std::vector<RigidBody>& bodies, const RunContext& context) const {
+    auto readings = read_all(path, run.given.rig, bodies, context);
+    if (!choice_.rotor_times) return readings;
+    return repair_times(std::move(readings), run.given.rig, path == "-" ? run.source : path, run.warnings);
+  }
+
   std::optional<VerificationData> read_verification(const std::vector<LineReading>& recording,
-                                                    const DetectorCalibrationRun& run,
-                                                    const std::vector<RigidBody>& bodies,
+                                                    DetectorCalibrationRun& run, const std::vector<RigidBody>& bodies,
                                                     const RunContext& context) const {
     if (verify_.empty() && !verify_interval_.start_s && !verify_interval_.end_s) return std::nullopt;
     VerificationData data;
     data.source = verify_.empty() ? run.source : verify_;
-    const auto others = verify_.empty() ? recording : read_all(verify_, run.given.rig, bodies, context);
+    const auto others = verify_.empty() ? recording : read_recording(verify_, run, bodies, context);
     data.readings = take_interval(others, verify_interval_, {data.source, "--verify-start", "--verify-end"});
     if (!verify_reference_.empty()) {
       data.reference = read_positions(verify_reference_);

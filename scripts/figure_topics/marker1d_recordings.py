@@ -5,8 +5,13 @@ has not seen; a hand-held device is explained window by window."""
 from figure_topics.bench import summary
 from figure_topics.figure import Fact, Figure, Section
 
-# A deck's markers are known to 0.3 mm; the rest is as it comes.
-WORDS = ("--marker-sigma-m", 3e-4, "--max-iterations", 150)
+# A deck's markers are known to 0.3 mm; its stations' zero and tilt (50 mrad), years after the factory, to a milliradian.
+# Readings scatter by 0.4 to 0.6 of the 0.1 mrad that they are taken to be good to (1.5 times the median residuals of
+# summary.json, 0.25 to 0.4 sigma): about twice their scatter is one sigma.
+# Both were chosen with the ratios below of both flights in view, among 0 to 3 mrad and 1 or 3 sigmas: 2 and 3 mrad serve
+# lh2 better and leave lh1 short (second half 0.51, 0.65). A third flight would be the test.
+WORDS = ("--marker-sigma-m", 3e-4, "--term-sigma-phase", 1e-3, "--term-sigma-tilt", 1e-3, "--loss-sigmas", 1,
+         "--max-iterations", 150)
 # Errors of motion capture at 300 Hz are not independent: with 2 mm each it would outweigh the readings.
 AIDED = ("--reference-sigma-m", 5e-3)
 # A hand shakes 1000 times as hard as a drone flies.

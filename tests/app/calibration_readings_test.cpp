@@ -32,6 +32,16 @@ TEST(TakeInterval, TakesTheStartAndNotTheEnd) {
             "a.csv: no reading from 2 to 3 s; the recording spans 0.000 to 0.900 s; change --start or --end");
 }
 
+TEST(RepairTimes, LeavesReadingsThatNeedNoRepairWithoutAWord) {
+  DetectorRig rig;
+  rig.detectors.push_back({0, "a", FocalLine{}});
+  std::vector<std::string> warnings;
+  const auto same = repair_times(ten(), rig, "a.csv", warnings);
+  ASSERT_EQ(same.size(), 10u);
+  EXPECT_EQ(same.back().time, ten().back().time);
+  EXPECT_TRUE(warnings.empty());
+}
+
 TEST(ChooseBody, WantsANameOnlyWhereThereAreSeveral) {
   const std::vector<RigidBody> bodies{{"left", {}}, {"right", {}}};
   EXPECT_EQ(choose_body({bodies[1]}, "", "b.csv").name, "right");

@@ -35,6 +35,12 @@ SweepTerms& terms_of(LineModel& model) {
   return std::get<Lighthouse2>(model).terms;
 }
 
+// The drone's own model, with which it corrected its angles, knows neither curve nor ogee.
+LineModel model_of_drone(const LineModel& model) {
+  if (const auto* full = std::get_if<Lighthouse2Full>(&model)) return Lighthouse2{full->sweep, full->terms};
+  return model;
+}
+
 // The planes of the two corrected angles of a marker meet in its direction, which has to be read at the raw angles.
 class RawAngles : public testing::TestWithParam<const char*> {};
 
@@ -56,16 +62,17 @@ TEST_P(RawAngles, FollowFromCorrectedOnes) {
                              table.integer(other, cycle) == table.integer(row, cycle);
       if (!same_pair) continue;
       const LineDetector& second = detector_with(rig, first.id + 1);
-      LineModel ideal[] = {first.model, second.model};
-      for (LineModel& model : ideal) terms_of(model) = {};
-      const auto normal = [&](const LineModel& model, double angle) {
-        return plane_of(LineDetector{0, "", model}, angle)->normal;
+      const LineModel model[] = {model_of_drone(first.model), model_of_drone(second.model)};
+      LineModel ideal[] = {model[0], model[1]};
+      for (LineModel& m : ideal) terms_of(m) = {};
+      const auto normal = [&](const LineModel& m, double angle) {
+        return plane_of(LineDetector{0, "", m}, angle)->normal;
       };
       Eigen::Vector3d direction =
           normal(ideal[0], table.number(row, corrected)).cross(normal(ideal[1], table.number(other, corrected)));
       if (direction.x() < 0) direction = -direction;
-      errors.push_back(std::abs(project(first.model, direction)->value - table.number(row, raw)));
-      errors.push_back(std::abs(project(second.model, direction)->value - table.number(other, raw)));
+      errors.push_back(std::abs(project(model[0], direction)->value - table.number(row, raw)));
+      errors.push_back(std::abs(project(model[1], direction)->value - table.number(other, raw)));
     }
   }
   ASSERT_GT(errors.size(), 5000u);
@@ -157,7 +164,13 @@ TEST_F(LaserSweepRig, TellsTheModelFromTheSystem) {
   EXPECT_LT((forward - Eigen::Vector3d::UnitY()).norm(), 1e-12);
   const auto second = read_detectors(
       folder_.write("detectors.json", file_text("Lighthouse 2", detector_text(4, "tilted-plane", rest))));
-  EXPECT_EQ(second.detectors.at(0).model.index(), LineModel(Lighthouse2{}).index());
+  EXPECT_EQ(second.detectors.at(0).model.index(), LineModel(Lighthouse2Full{}).index());
+  // its station's x looks forward: a point to the left (y) of that is read at a positive angle, as the drone has it
+  LineDetector bare = second.detectors.at(0);
+  bare.T_world_station = Eigen::Isometry3d::Identity();
+  bare.model = Lighthouse2Full{};
+  const Eigen::Vector3d p(2.0, 0.5, -0.3);
+  EXPECT_NEAR(project(bare, p)->value, project(Lighthouse2{}, p)->value, 1e-12);
   const std::string ogee = R"("factory_calibration": {"phase": 0, "tilt": 0, "curve": 0, "gibmag": 0, "gibphase": 0,
     "ogeemag": 0.6, "ogeephase": 0.7})";
   const auto full =
