@@ -43,7 +43,7 @@ std::vector<LineReading> read_all(const std::string& path, const DetectorRig& ri
   std::vector<LineReading> readings;
   while (const auto reading = source->next()) {
     readings.push_back(*reading);
-    if (readings.size() % kReadingsPerReport == 0) context.progress(source->progress("reading"));
+    if (readings.size() % kReadingsPerReport == 0) context.progress(progress_of(*source, "reading"));
   }
   if (readings.empty() && !context.stop.stop_requested()) {
     throw InputError(name_of_source(path), 0, "holds no reading", "record the moving body");

@@ -29,17 +29,11 @@ int width_of(const std::filesystem::path& image, int id, std::span<const LineDet
   return lens->width;
 }
 
-std::int64_t size_of(const std::filesystem::path& path) {
-  std::error_code none;
-  const auto size = std::filesystem::file_size(path, none);
-  return none ? 0 : static_cast<std::int64_t>(size);
-}
-
 }  // namespace
 
 LineImageSource::LineImageSource(const std::filesystem::path& directory, std::span<const LineDetector> detectors,
                                  std::span<const RigidBody> bodies, std::stop_token stop)
-    : directory_(directory), stop_(std::move(stop)), set_(read_line_image_set(directory)) {
+    : stop_(std::move(stop)), set_(read_line_image_set(directory)) {
   const auto index = directory / "lines.yaml";
   if (const auto fault = find_fault(set_.signs)) throw InputError(index, 0, *fault, "");
   for (const MarkerSign& sign : set_.signs) {
@@ -48,8 +42,8 @@ LineImageSource::LineImageSource(const std::filesystem::path& directory, std::sp
     }
   }
   for (const LineImageFiles& files : set_.detectors) {
-    strips_.push_back({files, width_of(files.parts.front(), files.detector, detectors), 0, {}, 0, 0, 0});
-    for (const auto& part : files.parts) bytes_ += size_of(part);
+    strips_.push_back({files, width_of(files.parts.front(), files.detector, detectors), 0, {}, 0, 0, 0, 0});
+    for (const auto& part : files.parts) bytes_ += file_bytes(part);
   }
 }
 
@@ -71,10 +65,12 @@ std::optional<LineReading> LineImageSource::next() {
   return reading;
 }
 
-Progress LineImageSource::progress(const std::string& stage) const {
+SourceExtent LineImageSource::extent() const {
   std::int64_t done = 0;
-  for (const Strip& strip : strips_) done += strip.bytes;
-  return {stage + " (kB)", (done + 999) / 1000, (bytes_ + 999) / 1000, ""};
+  for (const Strip& strip : strips_) {
+    done += strip.bytes + strip.part_bytes * strip.next_row / std::max(1, strip.image.rows);
+  }
+  return {done, bytes_};
 }
 
 std::vector<DetectorSignal> LineImageSource::signals() const {
@@ -105,8 +101,9 @@ LineSignalOptions LineImageSource::options_of(const Strip& strip) const {
 
 void LineImageSource::read_part(Strip& strip) const {
   strip.rows += strip.image.rows;
-  if (strip.next_part > 0) strip.bytes += size_of(strip.path());
+  strip.bytes += strip.part_bytes;
   strip.image = read_line_image(strip.files.parts[strip.next_part++]);
+  strip.part_bytes = file_bytes(strip.path());
   strip.next_row = 0;
   if (strip.image.cols == strip.width) return;
   throw InputError(strip.path(), 0,

@@ -23,7 +23,8 @@ class LineImageSource : public ReadingSource {
 
   /// Throws InputError for an image that is damaged, has another width than its detector, or ends before the others.
   std::optional<LineReading> next() override;
-  Progress progress(const std::string& stage) const override;
+  SourceExtent extent() const override;
+  bool finds_readings() const override { return true; }
   std::vector<DetectorSignal> signals() const override;
 
  private:
@@ -35,6 +36,7 @@ class LineImageSource : public ReadingSource {
     cv::Mat image;  // the part at hand
     int next_row = 0;
     std::int64_t rows = 0, bytes = 0;  // of the parts before
+    std::int64_t part_bytes = 0;       // of the part at hand
 
     bool is_used_up() const { return next_row == image.rows; }
     const std::filesystem::path& path() const { return files.parts[next_part - 1]; }
@@ -45,7 +47,6 @@ class LineImageSource : public ReadingSource {
   bool read_parts();
   std::vector<cv::Mat> next_rows();
 
-  std::filesystem::path directory_;
   std::stop_token stop_;
   LineImageSet set_;
   std::vector<Strip> strips_;

@@ -15,16 +15,12 @@ class TableSource : public ReadingSource {
   TableSource(const std::string& source, std::span<const LineDetector> detectors, std::span<const RigidBody> bodies,
               std::stop_token stop)
       : reader_(source, detectors, bodies, std::move(stop)) {
-    std::error_code no_size;
-    const auto size = source == "-" ? 0 : std::filesystem::file_size(source, no_size);
-    if (!no_size) bytes_ = static_cast<std::int64_t>(size);
+    if (source != "-") bytes_ = file_bytes(source);
   }
 
   std::optional<LineReading> next() override { return reader_.next(); }
 
-  Progress progress(const std::string& stage) const override {
-    return {stage + " (kB)", (reader_.bytes() + 999) / 1000, (bytes_ + 999) / 1000, ""};
-  }
+  SourceExtent extent() const override { return {reader_.bytes(), bytes_}; }
 
  private:
   ReadingReader reader_;
@@ -39,6 +35,17 @@ std::unique_ptr<ReadingSource> open_readings(const std::string& source, std::spa
     return std::make_unique<LineImageSource>(source, detectors, bodies, std::move(stop));
   }
   return std::make_unique<TableSource>(source, detectors, bodies, std::move(stop));
+}
+
+Progress progress_of(const ReadingSource& source, const std::string& stage) {
+  const SourceExtent extent = source.extent();
+  return {stage + " (kB)", (extent.done + 999) / 1000, (extent.total + 999) / 1000, ""};
+}
+
+std::int64_t file_bytes(const std::filesystem::path& path) {
+  std::error_code none;
+  const auto size = std::filesystem::file_size(path, none);
+  return none ? 0 : static_cast<std::int64_t>(size);
 }
 
 std::string name_of_source(const std::string& source) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
@@ -22,6 +23,12 @@ struct DetectorSignal {
   std::int64_t rows = 0, spots = 0, identified = 0;
 };
 
+/// How much of a source was read.
+struct SourceExtent {
+  std::int64_t done = 0;   ///< bytes
+  std::int64_t total = 0;  ///< 0: not known (standard input)
+};
+
 /// Readings of markers in order of time, in bounded memory, from wherever they come.
 class ReadingSource {
  public:
@@ -31,8 +38,11 @@ class ReadingSource {
   /// where what comes next cannot be read.
   virtual std::optional<LineReading> next() = 0;
 
-  /// How far that is, in kB of the source.
-  virtual Progress progress(const std::string& stage) const = 0;
+  /// How far that is.
+  virtual SourceExtent extent() const = 0;
+
+  /// Whether readings are found in images: they are nowhere else, and worth keeping.
+  virtual bool finds_readings() const { return false; }
 
   /// Of each detector, so far; empty where readings come as such.
   virtual std::vector<DetectorSignal> signals() const { return {}; }
@@ -43,6 +53,12 @@ class ReadingSource {
 /// bodies.
 std::unique_ptr<ReadingSource> open_readings(const std::string& source, std::span<const LineDetector> detectors,
                                              std::span<const RigidBody> bodies, std::stop_token stop);
+
+/// The same for the user, in kB.
+Progress progress_of(const ReadingSource& source, const std::string& stage);
+
+/// Size of a file; 0 where it cannot be told.
+std::int64_t file_bytes(const std::filesystem::path& path);
 
 /// What messages call it.
 std::string name_of_source(const std::string& source);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <chrono>
-#include <filesystem>
 #include <optional>
 
 #include <fmt/format.h>
@@ -76,8 +75,8 @@ class TrackBodyCommand : public Command {
     }
     BodyPipeline pipeline(detectors, bodies, track_, record, live);
     std::optional<ReadingWriter> found;  // in images; else they are in a table already
-    if (std::filesystem::is_directory(observations_)) found.emplace(directory.path("readings.csv"), detectors, true);
-    const auto show_progress = [&] { context.progress(source.progress("tracking")); };
+    if (source.finds_readings()) found.emplace(directory.path("readings.csv"), detectors, true);
+    const auto show_progress = [&] { context.progress(progress_of(source, "tracking")); };
     std::optional<InputError> fault;
     try {
       while (const auto reading = source.next()) {
