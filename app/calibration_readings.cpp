@@ -8,7 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "app/reading_source.h"
-#include "calib/rotor_times.h"
+#include "calib/detectors/rotor_times.h"
 #include "core/nearest_name.h"
 
 namespace alidade {

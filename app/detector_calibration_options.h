@@ -2,8 +2,8 @@
 #pragma once
 
 #include "app/options_yaml.h"
-#include "calib/detector_calibration.h"
-#include "calib/window_fit.h"
+#include "calib/detectors/detector_calibration.h"
+#include "calib/detectors/window_fit.h"
 
 namespace alidade {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/detector_calibration_options.h"
-#include "calib/detector_calibration.h"
+#include "calib/detectors/detector_calibration.h"
 #include "evaluation/statistics.h"
 #include "geometry/positions.h"
 

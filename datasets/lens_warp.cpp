@@ -28,7 +28,7 @@ Camera widened(const Camera& camera) {
   }
   constexpr double kMargin_px = 3.0;
   Camera wide = camera;
-  wide.distortion = {};
+  wide.distortion = BrownConrady{};
   wide.cx = std::ceil(-seen.min().x() * camera.fx + kMargin_px);
   wide.cy = std::ceil(-seen.min().y() * camera.fy + kMargin_px);
   wide.width = static_cast<int>(std::ceil(wide.cx + seen.max().x() * camera.fx + kMargin_px));

@@ -65,7 +65,7 @@ void validate(const RenderedSceneOptions& options) {
 
 RenderedScene::RenderedScene(const RenderedSceneOptions& options) : options_(options) {
   validate(options);
-  if (!(options.camera.distortion == BrownConrady{})) warp_.emplace(options.camera, options.supersampling);
+  if (!is_pinhole(options.camera.distortion)) warp_.emplace(options.camera, options.supersampling);
   Scene room = make_furnished_room({texel_for(options), options.seed});
   if (const auto T = T_world_marker()) room.surfaces.push_back(make_marker(*T, options.marker_m));
   renderer_.show(room);

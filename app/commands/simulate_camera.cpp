@@ -30,12 +30,11 @@ class SimulateCameraCommand : public Command {
     options_.add("width", width_, "px", "of the image");
     options_.add("height", height_, "px", "of the image");
     options_.add("focal_px", focal_px_, "px", "focal length; 0: 0.8125 of the width");
-    BrownConrady& lens = scene_.camera.distortion;
-    options_.add("distortion.k1", lens.k1, "", "radial, of Brown and Conrady's model");
-    options_.add("distortion.k2", lens.k2, "", "radial");
-    options_.add("distortion.p1", lens.p1, "", "tangential");
-    options_.add("distortion.p2", lens.p2, "", "tangential");
-    options_.add("distortion.k3", lens.k3, "", "radial");
+    options_.add("distortion.k1", lens_.k1, "", "radial, of Brown and Conrady's model");
+    options_.add("distortion.k2", lens_.k2, "", "radial");
+    options_.add("distortion.p1", lens_.p1, "", "tangential");
+    options_.add("distortion.p2", lens_.p2, "", "tangential");
+    options_.add("distortion.k3", lens_.k3, "", "radial");
     options_.add_choice("path", scene_.path,
                         {{"orbit", PathKind::Orbit},
                          {"sweep", PathKind::Sweep},
@@ -87,8 +86,7 @@ class SimulateCameraCommand : public Command {
       return options;
     }
     const double focal_px = focal_px_ == 0 ? kFocalPerWidth * width_ : focal_px_;
-    options.camera = {
-        width_, height_, focal_px, focal_px, 0.5 * (width_ - 1), 0.5 * (height_ - 1), scene_.camera.distortion};
+    options.camera = {width_, height_, focal_px, focal_px, 0.5 * (width_ - 1), 0.5 * (height_ - 1), lens_};
     return options;
   }
 
@@ -122,6 +120,7 @@ class SimulateCameraCommand : public Command {
   SequenceForm form_ = SequenceForm::Images;
   bool depth_ = false;
   int width_ = 640, height_ = 480;
+  BrownConrady lens_;
   double focal_px_ = 0;
 };
 

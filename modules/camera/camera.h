@@ -3,24 +3,20 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
 
+#include "camera/distortion.h"
+
 namespace alidade {
 
-/// Lens distortion of Brown and Conrady, OpenCV's order and signs; all zero: none.
-/// x_d = x (1 + k1 r² + k2 r⁴ + k3 r⁶) + 2 p1 x y + p2 (r² + 2x²), and y alike with p1 and p2 exchanged.
-struct BrownConrady {
-  double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;
-  bool operator==(const BrownConrady&) const = default;
-};
-
-/// Intrinsics of a pinhole camera: x right, y down, z forward; pixel (0, 0) is the centre of the top-left pixel.
+/// Intrinsics of a camera: x right, y down, z forward; pixel (0, 0) is the centre of the top-left pixel.
 struct Camera {
   int width = 0, height = 0;  ///< px
   double fx = 0, fy = 0;      ///< px
   double cx = 0, cy = 0;      ///< px
-  BrownConrady distortion;
+  Distortion distortion;
   double readout_s = 0;  ///< from the first row's exposure to the last one's; 0: all rows are exposed at once
   bool operator==(const Camera&) const = default;
 };
@@ -35,15 +31,30 @@ struct Projection {
 };
 
 /// The pixel of a point in camera coordinates (m) and its Jacobian. Empty where the point is not in front of the
-/// camera, or so far off axis that the distortion polynomial folds back. The pixel may lie outside the image.
+/// camera (a fisheye sees all but the backward axis), or so far off axis that the distortion polynomial folds back. The
+/// pixel may lie outside the image.
 std::optional<Projection> project(const Camera& camera, const Eigen::Vector3d& p_camera);
 
 /// The undistorted normalised coordinates (x/z, y/z) that project to `pixel`, by damped Newton steps.
-/// Empty where the distortion has no inverse there.
+/// Empty where the distortion has no inverse there, or the ray does not go forward.
 std::optional<Eigen::Vector2d> undistort(const Camera& camera, const Eigen::Vector2d& pixel);
 
-/// The unit direction d_camera of the ray through `pixel`; empty as for undistort.
+/// The unit direction d_camera of the ray through `pixel`; empty where the distortion has no inverse there.
 std::optional<Eigen::Vector3d> unproject(const Camera& camera, const Eigen::Vector2d& pixel);
+
+/// fx, fy, cx, cy, then the distortion's coefficients: all that a calibration finds.
+using Intrinsics = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 4 + kMostCoefficients, 1>;
+Intrinsics intrinsics(const Camera& camera);
+
+/// The names of intrinsics() in order: "fx", "fy", "cx", "cy", "k1", ...
+std::vector<std::string> intrinsics_names(const Camera& camera);
+
+/// The camera with other intrinsics of the same model. Throws std::invalid_argument for another number of them.
+Camera with_intrinsics(Camera camera, const Intrinsics& values);
+
+/// ∂pixel/∂intrinsics of a point in camera coordinates, 2×n (px per unit of each), by the formula alone as distort.
+Eigen::Matrix<double, 2, Eigen::Dynamic, 0, 2, 4 + kMostCoefficients> intrinsics_jacobian(
+    const Camera& camera, const Eigen::Vector3d& p_camera);
 
 /// K, the 3×3 calibration matrix (px).
 Eigen::Matrix3d calibration_matrix(const Camera& camera);

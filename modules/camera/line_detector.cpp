@@ -23,7 +23,7 @@ Overloaded(Cases...) -> Overloaded<Cases...>;
 
 // A line camera reads as a camera does of points in its plane y = 0; the image's height plays no part.
 Camera flat_camera(const LineCamera& m) {
-  return {m.width, 1, m.f, m.f, m.c, 0.0, {m.k1, m.k2, 0.0, 0.0, m.k3}};
+  return {m.width, 1, m.f, m.f, m.c, 0.0, BrownConrady{m.k1, m.k2, 0.0, 0.0, m.k3}, 0.0};
 }
 
 std::optional<LineProjection> project_focal_line(const Vector3d& p) {

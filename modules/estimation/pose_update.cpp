@@ -177,8 +177,8 @@ std::optional<PoseUpdate> update_pose(const Camera& camera, const PosePrior& pri
                                       std::span<const PointObservation> observations,
                                       const PoseUpdateOptions& options) {
   const bool is_exact =
-      camera.distortion == BrownConrady{} && (options.map_uncertainty == MapUncertainty::Ignored ||
-                                              std::all_of(observations.begin(), observations.end(), has_exact_point));
+      is_pinhole(camera.distortion) && (options.map_uncertainty == MapUncertainty::Ignored ||
+                                        std::all_of(observations.begin(), observations.end(), has_exact_point));
   if (is_exact) {
     ExactSightings sightings(camera, observations, options.variance_factor);
     return solve(PoseProblem(std::move(sightings), prior, observations, options), prior, options.least_inliers);

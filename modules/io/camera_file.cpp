@@ -102,15 +102,20 @@ int parse_size(const std::filesystem::path& path, int line, std::string_view wor
   return static_cast<int>(size);
 }
 
-BrownConrady distortion_from(const std::filesystem::path& path, int line, std::span<const double> k) {
-  const bool other_model = std::any_of(k.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(5, k.size())),
+Distortion distortion_from(const std::filesystem::path& path, int line, std::span<const double> k) {
+  const bool other_model = std::any_of(k.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(8, k.size())),
                                        k.end(), [](double value) { return value != 0; });
   if (other_model) {
     throw InputError(path, line, fmt::format("distortion with {} coefficients is not supported", k.size()),
-                     "calibrate with k1 k2 p1 p2 k3");
+                     "calibrate with k1 k2 p1 p2 k3 k4 k5 k6, without thin prisms and tilt");
   }
   const auto at = [&](std::size_t i) { return i < k.size() ? k[i] : 0.0; };
-  return {at(0), at(1), at(2), at(3), at(4)};
+  return BrownConrady{at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)};
+}
+
+Fisheye fisheye_from(const std::filesystem::path& path, int line, std::span<const double> k) {
+  if (k.size() != 4) throw InputError(path, line, fmt::format("a fisheye has 4 coefficients, got {}", k.size()), "");
+  return {k[0], k[1], k[2], k[3]};
 }
 
 std::vector<NamedCamera> read_cameras(const std::filesystem::path& path, std::optional<ImageSize> size_of_images) {
@@ -140,14 +145,34 @@ std::string quoted_yaml(const std::string& text) {
   return quoted + '"';
 }
 
+namespace {
+
+std::string_view model_name(const Distortion& distortion) {
+  if (std::holds_alternative<Fisheye>(distortion)) return "fisheye";
+  return is_pinhole(distortion) ? "pinhole" : "brown_conrady";
+}
+
+// "k1: -0.26, k2: 0.1, ..."; Brown and Conrady's k4, k5, k6 only where they are used.
+std::string format_coefficients(const Distortion& distortion) {
+  const DistortionCoefficients values = coefficients(distortion);
+  const auto names = coefficient_names(distortion);
+  Eigen::Index count = values.size();
+  while (count > 5 && values[count - 1] == 0) --count;
+  std::string text;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    text += fmt::format("{}{}: {}", i == 0 ? "" : ", ", names[static_cast<std::size_t>(i)], values[i]);
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string format_camera(const Camera& c, const std::string& indent) {
-  const BrownConrady& k = c.distortion;
-  std::string text = fmt::format("{}model: {}\n{}resolution_px: [{}, {}]\n", indent,
-                                 k == BrownConrady{} ? "pinhole" : "brown_conrady", indent, c.width, c.height);
+  std::string text = fmt::format("{}model: {}\n{}resolution_px: [{}, {}]\n", indent, model_name(c.distortion), indent,
+                                 c.width, c.height);
   text += fmt::format("{}intrinsics_px: {{fx: {}, fy: {}, cx: {}, cy: {}}}\n", indent, c.fx, c.fy, c.cx, c.cy);
-  if (k != BrownConrady{}) {
-    text +=
-        fmt::format("{}distortion: {{k1: {}, k2: {}, p1: {}, p2: {}, k3: {}}}\n", indent, k.k1, k.k2, k.p1, k.p2, k.k3);
+  if (!is_pinhole(c.distortion)) {
+    text += fmt::format("{}distortion: {{{}}}\n", indent, format_coefficients(c.distortion));
   }
   if (c.readout_s != 0) text += fmt::format("{}readout_s: {}\n", indent, c.readout_s);
   return text;

@@ -48,8 +48,12 @@ void set_intrinsics(const std::filesystem::path& path, int line, std::span<const
 /// A width or height in px, 0 to 1 000 000.
 int parse_size(const std::filesystem::path& path, int line, std::string_view word);
 
-/// Distortion of OpenCV's order k1 k2 p1 p2 [k3 ...]. Throws InputError where coefficients beyond k3 are not 0.
-BrownConrady distortion_from(const std::filesystem::path& path, int line, std::span<const double> coefficients);
+/// Distortion of OpenCV's order k1 k2 p1 p2 [k3 [k4 k5 k6 ...]]. Throws InputError where thin-prism or tilt
+/// coefficients beyond k6 are not 0.
+Distortion distortion_from(const std::filesystem::path& path, int line, std::span<const double> coefficients);
+
+/// Fisheye of four coefficients. Throws InputError for another number of them.
+Fisheye fisheye_from(const std::filesystem::path& path, int line, std::span<const double> coefficients);
 
 /// A text in YAML's double quotes.
 std::string quoted_yaml(const std::string& text);

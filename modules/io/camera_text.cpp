@@ -18,8 +18,13 @@ struct ColmapModel {
   std::string_view name;
   std::size_t parameters;
 };
-constexpr std::array<ColmapModel, 6> kColmapModels{
-    {{"SIMPLE_PINHOLE", 3}, {"PINHOLE", 4}, {"SIMPLE_RADIAL", 4}, {"RADIAL", 5}, {"OPENCV", 8}, {"FULL_OPENCV", 12}}};
+constexpr std::array<ColmapModel, 7> kColmapModels{{{"SIMPLE_PINHOLE", 3},
+                                                    {"PINHOLE", 4},
+                                                    {"SIMPLE_RADIAL", 4},
+                                                    {"RADIAL", 5},
+                                                    {"OPENCV", 8},
+                                                    {"FULL_OPENCV", 12},
+                                                    {"OPENCV_FISHEYE", 8}}};
 
 const ColmapModel& find_model(const Path& path, int line, std::string_view name) {
   std::vector<std::string_view> known;
@@ -39,12 +44,17 @@ Camera colmap_camera(const Path& path, int line, std::string_view model, const s
   c.fy = one_focal_length ? p[0] : p[1];
   c.cx = p[centre] - 0.5;  // COLMAP's origin is the corner of the top-left pixel, ours its centre
   c.cy = p[centre + 1] - 0.5;
-  c.distortion = distortion_from(path, line, std::span(p).subspan(centre + 2));
+  const auto k = std::span(p).subspan(centre + 2);
+  if (model == "OPENCV_FISHEYE") {
+    c.distortion = fisheye_from(path, line, k);
+  } else {
+    c.distortion = distortion_from(path, line, k);
+  }
   return c;
 }
 
 double* value_named(Camera& c, std::string_view name) {
-  BrownConrady& k = c.distortion;
+  auto& k = std::get<BrownConrady>(c.distortion);
   const std::pair<std::string_view, double*> values[] = {{"fx", &c.fx}, {"fy", &c.fy}, {"cx", &c.cx},
                                                          {"cy", &c.cy}, {"k1", &k.k1}, {"k2", &k.k2},
                                                          {"p1", &k.p1}, {"p2", &k.p2}, {"k3", &k.k3}};

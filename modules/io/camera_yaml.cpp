@@ -48,13 +48,14 @@ void read_intrinsics(const Path& path, const YAML::Node& map, CameraRecord& reco
 
 void read_distortion(const Path& path, const YAML::Node& map, CameraRecord& record) {
   require_yaml_map(path, map, "{k1: 0.1, k2: 0, p1: 0, p2: 0, k3: 0}");
-  constexpr std::array<std::string_view, 5> kKeys{"k1", "k2", "p1", "p2", "k3"};
-  refuse_unknown_keys(path, map, kKeys);
-  BrownConrady& k = record.camera.distortion;
-  double* const values[] = {&k.k1, &k.k2, &k.p1, &k.p2, &k.k3};
-  for (std::size_t i = 0; i < kKeys.size(); ++i) {
-    if (const YAML::Node value = map[kKeys[i].data()]) *values[i] = yaml_number(path, value);
+  const auto names = coefficient_names(record.camera.distortion);
+  refuse_unknown_keys(path, map, names);
+  std::vector<double> values;
+  for (const std::string_view name : names) {
+    const YAML::Node value = map[std::string(name)];
+    values.push_back(value ? yaml_number(path, value) : 0.0);
   }
+  record.camera.distortion = with_coefficients(record.camera.distortion, values);
   record.lines["distortion"] = yaml_line(map);
 }
 
@@ -110,6 +111,12 @@ void read_opencv_size(const Path& path, const YAML::Node& root, CameraRecord& re
   }
 }
 
+// ROS says so; OpenCV's own files do not tell a fisheye from a radial lens with four coefficients.
+bool is_equidistant(const YAML::Node& root) {
+  const YAML::Node model = root["distortion_model"];
+  return model && model.IsScalar() && (model.Scalar() == "equidistant" || model.Scalar() == "fisheye");
+}
+
 CameraRecord read_opencv_camera(const Path& path, const YAML::Node& root, const KeyPair& keys) {
   CameraRecord record;
   const YAML::Node matrix = root[keys.matrix];
@@ -117,7 +124,9 @@ CameraRecord read_opencv_camera(const Path& path, const YAML::Node& root, const 
   record.line = yaml_line(matrix);
   set_intrinsics(path, record.line, numbers_of(path, matrix), record.camera);
   if (const YAML::Node distortion = root[keys.distortion]) {
-    record.camera.distortion = distortion_from(path, yaml_line(distortion), numbers_of(path, distortion));
+    const std::vector<double> values = numbers_of(path, distortion);
+    record.camera.distortion = is_equidistant(root) ? fisheye_from(path, yaml_line(distortion), values)
+                                                    : distortion_from(path, yaml_line(distortion), values);
     record.lines["distortion"] = yaml_line(distortion);
   }
   read_opencv_size(path, root, record);
@@ -125,9 +134,6 @@ CameraRecord read_opencv_camera(const Path& path, const YAML::Node& root, const 
 }
 
 CameraRecords read_opencv(const Path& path, const YAML::Node& root) {
-  if (const YAML::Node model = root["distortion_model"]; model && model.IsScalar() && model.Scalar() == "equidistant") {
-    throw InputError(path, yaml_line(model), "the distortion model 'equidistant' is not supported", "");
-  }
   CameraRecords records;
   for (const KeyPair& keys : kKeyPairs) {
     if (!root[keys.matrix]) continue;
@@ -150,8 +156,9 @@ CameraRecord read_camera_node(const Path& path, const YAML::Node& node, std::siz
   CameraRecord record;
   record.line = yaml_line(node);
   record.name = node["name"] && node["name"].IsScalar() ? node["name"].Scalar() : fmt::format("camera {}", index);
-  constexpr std::array<std::string_view, 2> kModels{"pinhole", "brown_conrady"};
+  constexpr std::array<std::string_view, 3> kModels{"pinhole", "brown_conrady", "fisheye"};
   const std::string model_name = yaml_choice(path, required(path, node, "model"), "camera model", kModels);
+  if (model_name == "fisheye") record.camera.distortion = Fisheye{};
   read_resolution(path, required(path, node, "resolution_px"), record);
   read_intrinsics(path, required(path, node, "intrinsics_px"), record);
   if (const YAML::Node distortion = node["distortion"]) {

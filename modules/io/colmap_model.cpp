@@ -21,13 +21,19 @@ namespace fs = std::filesystem;
 
 const Eigen::Vector2d kCorner(0.5, 0.5);  // COLMAP's origin is the corner of the top-left pixel, ours its centre
 
+const char* model_name(const Distortion& distortion) {
+  if (std::holds_alternative<Fisheye>(distortion)) return "OPENCV_FISHEYE";
+  if (is_pinhole(distortion)) return "PINHOLE";
+  return coefficients(distortion).tail<4>().isZero(0) ? "OPENCV" : "FULL_OPENCV";
+}
+
 std::string camera_line(const Camera& c) {
-  const BrownConrady& k = c.distortion;
-  const char* const model = k == BrownConrady{} ? "PINHOLE" : k.k3 == 0 ? "OPENCV" : "FULL_OPENCV";
+  const std::string_view model = model_name(c.distortion);
   std::string line =
       fmt::format("1 {} {} {} {} {} {} {}", model, c.width, c.height, c.fx, c.fy, c.cx + 0.5, c.cy + 0.5);
-  if (k != BrownConrady{}) line += fmt::format(" {} {} {} {}", k.k1, k.k2, k.p1, k.p2);
-  if (k.k3 != 0) line += fmt::format(" {} 0 0 0", k.k3);
+  const DistortionCoefficients k = coefficients(c.distortion);
+  const Eigen::Index count = model == "PINHOLE" ? 0 : model == "OPENCV" ? 4 : k.size();
+  for (Eigen::Index i = 0; i < count; ++i) line += fmt::format(" {}", k[i]);
   return line + "\n";
 }
 

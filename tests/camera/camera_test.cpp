@@ -17,9 +17,10 @@ namespace {
 // barrel with tangential parts, which folds back outside the image.
 const std::vector<Camera> kCameras{
     {640, 480, 500, 510, 320, 240, {}},
-    {640, 480, 518.8, 518.8, 320, 240, {-0.0308, 0, 0, 0, 0}},
-    {640, 480, 517.3, 516.5, 318.6, 255.3, {0.2624, -0.9531, -0.0054, 0.0026, 1.1633}},
-    {752, 480, 458.654, 457.296, 367.215, 248.375, {-0.28340811, 0.07395907, 0.00019359, 1.76187114e-05, 0}},
+    {640, 480, 518.8, 518.8, 320, 240, BrownConrady{-0.0308, 0, 0, 0, 0}},
+    {640, 480, 517.3, 516.5, 318.6, 255.3, BrownConrady{0.2624, -0.9531, -0.0054, 0.0026, 1.1633}},
+    {752, 480, 458.654, 457.296, 367.215, 248.375,
+     BrownConrady{-0.28340811, 0.07395907, 0.00019359, 1.76187114e-05, 0}},
 };
 
 std::vector<Eigen::Vector3d> points_in_view(const Camera& camera) {
@@ -36,7 +37,7 @@ std::vector<Eigen::Vector3d> points_in_view(const Camera& camera) {
 
 TEST(Project, AgreesWithOpenCv) {
   for (const Camera& camera : kCameras) {
-    const auto& k = camera.distortion;
+    const auto& k = std::get<BrownConrady>(camera.distortion);
     const cv::Matx33d K(camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1);
     for (const Eigen::Vector3d& p : points_in_view(camera)) {
       std::vector<cv::Point2d> expected;
@@ -75,7 +76,8 @@ TEST(Project, IsEmptyBehindTheCamera) {
 // r (1 + k1 r²) with k1 = -0.25 grows until 1 + 3 k1 r² = 0: r² = 4/3.
 TEST(Project, IsEmptyWhereTheDistortionFoldsBack) {
   Camera camera = kCameras[0];
-  camera.distortion.k1 = -0.25;
+  auto& lens = std::get<BrownConrady>(camera.distortion);
+  lens.k1 = -0.25;
   const double fold = std::sqrt(4.0 / 3.0);
   EXPECT_TRUE(project(camera, {0.999 * fold, 0, 1}));
   EXPECT_FALSE(project(camera, {1.001 * fold, 0, 1}));
@@ -85,8 +87,9 @@ TEST(Project, IsEmptyWhereTheDistortionFoldsBack) {
 // The slope 1 + 3 k1 s + 5 k2 s² dips below 0 in a narrow interval about s = 1 only, and is positive again beyond it.
 TEST(Project, IsEmptyBeyondANarrowFold) {
   Camera camera = kCameras[0];
-  camera.distortion.k1 = -2.0 * 1.0001 / 3.0;
-  camera.distortion.k2 = 1.0 / 5.0;
+  auto& lens = std::get<BrownConrady>(camera.distortion);
+  lens.k1 = -2.0 * 1.0001 / 3.0;
+  lens.k2 = 1.0 / 5.0;
   EXPECT_TRUE(project(camera, {0.98, 0, 1}));
   EXPECT_FALSE(project(camera, {1.02, 0, 1}));
   EXPECT_FALSE(project(camera, {2.0, 0, 1}));
@@ -95,9 +98,10 @@ TEST(Project, IsEmptyBeyondANarrowFold) {
 // The same with a cubic slope: (1 - s)² (1 + s) less a little = 1 - s - s² + s³ - 0.0001 s.
 TEST(Project, IsEmptyBeyondANarrowFoldOfThreeCoefficients) {
   Camera camera = kCameras[0];
-  camera.distortion.k1 = -1.0001 / 3.0;
-  camera.distortion.k2 = -1.0 / 5.0;
-  camera.distortion.k3 = 1.0 / 7.0;
+  auto& lens = std::get<BrownConrady>(camera.distortion);
+  lens.k1 = -1.0001 / 3.0;
+  lens.k2 = -1.0 / 5.0;
+  lens.k3 = 1.0 / 7.0;
   EXPECT_TRUE(project(camera, {0.98, 0, 1}));
   EXPECT_FALSE(project(camera, {1.02, 0, 1}));
 }
@@ -122,7 +126,8 @@ TEST(Unproject, IsUnitLengthAndAlongTheAxisAtThePrincipalPoint) {
 
 TEST(Undistort, IsEmptyWhereNoDirectionHasThePixel) {
   Camera camera = kCameras[0];
-  camera.distortion.k1 = -0.25;  // no direction lies farther out than fold (1 - 0.25 fold²) = 0.77 focal lengths
+  auto& lens = std::get<BrownConrady>(camera.distortion);
+  lens.k1 = -0.25;  // no direction lies farther out than fold (1 - 0.25 fold²) = 0.77 focal lengths
   EXPECT_TRUE(undistort(camera, {camera.cx + 0.76 * camera.fx, camera.cy}));
   EXPECT_FALSE(undistort(camera, {camera.cx + 0.78 * camera.fx, camera.cy}));
 }
@@ -140,7 +145,8 @@ TEST(FindFault, NamesValueAndBound) {
   EXPECT_EQ(fault_of([](Camera& c) { c.fy = std::numeric_limits<double>::infinity(); }), "fy must be > 0 px, got inf");
   EXPECT_EQ(fault_of([](Camera& c) { c.cx = 641; }), "cx must lie in the image (0..640 px), got 641");
   EXPECT_EQ(fault_of([](Camera& c) { c.cy = -2; }), "cy must lie in the image (0..480 px), got -2");
-  EXPECT_EQ(fault_of([](Camera& c) { c.distortion.k3 = std::nan(""); }), "distortion must be finite, got nan");
+  EXPECT_EQ(fault_of([](Camera& c) { std::get<BrownConrady>(c.distortion).k3 = std::nan(""); }),
+            "distortion must be finite, got nan");
 }
 
 TEST(CalibrationMatrix, TakesNormalisedCoordinatesToPixels) {

@@ -71,7 +71,7 @@ TEST(RenderedScene, PicturesDepthsAndTruthAgree) {
 
 TEST(RenderedScene, PicturesDepthsAndTruthAgreeThroughADistortingLens) {
   RenderedSceneOptions options = small();
-  options.camera.distortion = {-0.25, 0.06, 0.001, -0.002, 0};
+  options.camera.distortion = BrownConrady{-0.25, 0.06, 0.001, -0.002, 0};
   options.supersampling = 2;
   RenderedScene scene(options);
   const Reprojection exact = reproject(scene, 0, 6, 0.0);

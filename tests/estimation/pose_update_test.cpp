@@ -230,7 +230,7 @@ TEST_F(UpdatePose, LeavesOutWhatLiesBehindTheCamera) {
 // A camera without distortion, the point on its axis 5 m away: a metre across is f/5 px, a metre along is nothing.
 TEST(MeasurementNoise, AddsTheMapsToThePixels) {
   Camera camera = test::vga_camera();
-  camera.distortion = {};
+  camera.distortion = BrownConrady{};
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.linear() = exp_so3(Eigen::Vector3d(0, 0, std::acos(0.0)));  // camera x is world y
   PointObservation o;

@@ -112,8 +112,9 @@ TEST_F(CameraFile, NamesWhatIsWrongInOpenCvsYaml) {
   EXPECT_EQ(message("c.yml", with("0., 0., 1. ]", "0. ]")),
             "c.yml:5: is no camera matrix; [fx 0 cx; 0 fy cy; 0 0 1] is wanted");
   EXPECT_EQ(message("c.yml", with("537.", "5x7")), "c.yml:9: '5x7' is not a number");
-  EXPECT_EQ(message("c.yml", with(".25 ]", ".25, 0, 0, 0.7 ]")),
-            "c.yml:10: distortion with 8 coefficients is not supported; calibrate with k1 k2 p1 p2 k3");
+  EXPECT_EQ(message("c.yml", with(".25 ]", ".25, 0, 0, 0.7, 0.1 ]")),
+            "c.yml:10: distortion with 9 coefficients is not supported; calibrate with k1 k2 p1 p2 k3 k4 k5 k6, "
+            "without thin prisms and tilt");
   EXPECT_EQ(message("c.yml", text.substr(0, text.find("-0.26"))),
             "c.yml:14: damaged YAML: end of sequence flow not found; correct the line or write the file again");
   EXPECT_EQ(message("c.yml", with("image_width: 640\n", "")),
@@ -222,7 +223,7 @@ TEST(RealCameraFiles, AreRead) {
             (Camera{640, 480, 518.8, 518.8, 320, 240, {-0.0308, 0, 0, 0, 0}}));
   EXPECT_EQ(read_camera(data / "seven-scenes/camera-intrinsics.txt", kSize),
             (Camera{640, 480, 585, 585, 320, 240, {}}));
-  EXPECT_EQ(read_camera(data / "tum-fr1-rpy/camera.txt", kSize).distortion.k3, 1.1633);
+  EXPECT_EQ(std::get<BrownConrady>(read_camera(data / "tum-fr1-rpy/camera.txt", kSize).distortion).k3, 1.1633);
   EXPECT_EQ(read_camera(data / "kitti-clip/calib.txt", ImageSize{1226, 370}).fx, 707.0912);
   EXPECT_EQ(read_camera(data / "chessboard-stereo/left_intrinsics.yml").fx, 535.91573396163199);
   EXPECT_EQ(read_cameras(data / "chessboard-stereo/intrinsics.yml", kSize).at(1).camera.cx, 334.55744527912015);

@@ -82,8 +82,10 @@ TEST_F(ColmapFolder, GivesBackTheMap) {
 }
 
 TEST_F(ColmapFolder, KeepsEveryKindOfDistortion) {
-  for (const BrownConrady& distortion :
-       {BrownConrady{}, BrownConrady{0.1, 0, 0, 0, 0}, BrownConrady{0.2, -0.9, -0.005, 0.002, 1.1}}) {
+  for (const Distortion& distortion : {Distortion{BrownConrady{}}, Distortion{BrownConrady{0.1, 0, 0, 0, 0}},
+                                       Distortion{BrownConrady{0.2, -0.9, -0.005, 0.002, 1.1}},
+                                       Distortion{BrownConrady{0.2, -0.9, -0.005, 0.002, 1.1, 0.1, 0.2, 0.3}},
+                                       Distortion{Fisheye{0.2, -0.9, 0.005, 0.002}}}) {
     Camera camera = kCamera;
     camera.distortion = distortion;
     write_colmap_model(folder_.path(), camera, some_map());

@@ -105,7 +105,7 @@ TEST_F(MatchAlongEpipolarLines, AreNoneWhereTheCentresCoincide) {
 
 // A pixel that the lens model cannot undistort lies on no line, though its descriptor would fit best.
 TEST_F(MatchAlongEpipolarLines, PassOverPixelsOutsideTheLensModel) {
-  camera_.distortion = {-0.6, 0, 0, 0, 0};
+  camera_.distortion = BrownConrady{-0.6, 0, 0, 0, 0};
   const Eigen::Vector2d outside(3000, 2500);
   ASSERT_FALSE(undistort(camera_, outside));
   for (std::size_t k = 0; k < 2; ++k) {

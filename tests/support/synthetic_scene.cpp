@@ -13,7 +13,7 @@ Camera vga_camera() {
   camera.fy = 515;
   camera.cx = 322;
   camera.cy = 238;
-  camera.distortion = {-0.12, 0.03, 0.001, -0.0005, 0};
+  camera.distortion = BrownConrady{-0.12, 0.03, 0.001, -0.0005, 0};
   return camera;
 }
 

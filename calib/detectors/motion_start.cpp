@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/motion_start.h"
+#include "calib/detectors/motion_start.h"
 
 #include <algorithm>
 #include <cmath>

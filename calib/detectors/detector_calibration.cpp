@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/detector_calibration.h"
+#include "calib/detectors/detector_calibration.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "calib/calibration_problem.h"
-#include "calib/placed_readings.h"
+#include "calib/detectors/calibration_problem.h"
+#include "calib/detectors/placed_readings.h"
 #include "geometry/alignment.h"
 
 namespace alidade {

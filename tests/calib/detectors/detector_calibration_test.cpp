@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/detector_calibration.h"
+#include "calib/detectors/detector_calibration.h"
 
 #include <cmath>
 #include <numbers>

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "calib/bordered_system.h"
-#include "calib/detector_calibration.h"
-#include "calib/motion_start.h"
+#include "calib/detectors/bordered_system.h"
+#include "calib/detectors/detector_calibration.h"
+#include "calib/detectors/motion_start.h"
 
 namespace alidade {
 

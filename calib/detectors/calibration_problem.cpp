@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/calibration_problem.h"
+#include "calib/detectors/calibration_problem.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "calib/detector_calibration.h"
+#include "calib/detectors/detector_calibration.h"
 #include "datasets/detectors.h"
 #include "geometry/alignment.h"
 #include "io/body_file.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/bordered_system.h"
+#include "calib/detectors/bordered_system.h"
 
 #include <Eigen/Cholesky>
 

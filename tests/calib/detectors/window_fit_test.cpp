@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/window_fit.h"
+#include "calib/detectors/window_fit.h"
 
 #include <cmath>
 #include <numbers>
@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "calib/placed_readings.h"
+#include "calib/detectors/placed_readings.h"
 #include "geometry/pose.h"
 #include "geometry/rotation.h"
 

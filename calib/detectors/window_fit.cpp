@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/window_fit.h"
+#include "calib/detectors/window_fit.h"
 
 #include <algorithm>
 #include <chrono>
@@ -10,7 +10,7 @@
 #include <Eigen/Cholesky>
 #include <fmt/format.h>
 
-#include "calib/placed_readings.h"
+#include "calib/detectors/placed_readings.h"
 #include "geometry/rotation.h"
 
 namespace alidade {

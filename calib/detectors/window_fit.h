@@ -6,7 +6,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "calib/motion_start.h"
+#include "calib/detectors/motion_start.h"
 #include "camera/measurement.h"
 #include "geometry/rigid_body.h"
 #include "geometry/trajectory.h"

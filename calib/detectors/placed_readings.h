@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "calib/motion_start.h"
+#include "calib/detectors/motion_start.h"
 #include "camera/measurement.h"
 #include "geometry/rigid_body.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/body_motion.h"
+#include "calib/detectors/body_motion.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
-#include "calib/calibration_problem.h"
+#include "calib/detectors/calibration_problem.h"
 #include "geometry/pose.h"
 #include "geometry/rotation.h"
 

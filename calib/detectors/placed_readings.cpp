@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/placed_readings.h"
+#include "calib/detectors/placed_readings.h"
 
 #include <map>
 

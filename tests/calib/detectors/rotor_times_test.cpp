@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/rotor_times.h"
+#include "calib/detectors/rotor_times.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/body_motion.h"
+#include "calib/detectors/body_motion.h"
 #include "camera/detector_rig.h"
 #include "camera/measurement.h"
 #include "core/progress.h"

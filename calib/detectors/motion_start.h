@@ -6,7 +6,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "calib/body_motion.h"
+#include "calib/detectors/body_motion.h"
 #include "camera/line_detector.h"
 
 namespace alidade {
