@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "calib/cameras/board_bundle.h"
+
+namespace alidade {
+
+/// What is believed of a shared parameter before any view: that it is 0, with this information (1/sigma²).
+struct BundlePrior {
+  int place = 0;  ///< in the vector of shared parameters
+  double value = 0;
+  double information = 0;
+};
+
+/// Weak beliefs that keep the equations regular where the views say nothing: the board is nearly flat, and no
+/// coefficient of the distortion alone moves the image's corner by more than its distance from the centre.
+std::vector<BundlePrior> bundle_priors(const BoardBundle& bundle, const BoardShape& shape,
+                                       const BundleFreedom& freedom);
+
+}  // namespace alidade

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/cameras/projection_uncertainty.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Eigenvalues>
+
+#include "geometry/rotation.h"
+
+namespace alidade {
+namespace {
+
+double median_origin_distance(const BoardBundle& bundle) {
+  std::vector<double> distances;
+  for (const Eigen::Isometry3d& T : bundle.T_rig_board) distances.push_back(T.translation().norm());
+  if (distances.empty()) return 1;
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::nth_element(distances.begin(), middle, distances.end());
+  return *middle;
+}
+
+double larger_sigma(const Eigen::Matrix2d& covariance) {
+  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(covariance, Eigen::EigenvaluesOnly).eigenvalues()[1]);
+}
+
+}  // namespace
+
+std::optional<Eigen::MatrixXd> pixel_jacobian(const BoardBundle& bundle, const BundleFreedom& freedom, int index,
+                                              const Eigen::Vector2d& pixel, double distance_m) {
+  const BundleCamera& of = bundle.cameras[static_cast<std::size_t>(index)];
+  const auto direction = unproject(of.camera, pixel);
+  if (!direction) return std::nullopt;
+  const BundleLayout layout(bundle, freedom);
+  const Eigen::Vector3d p = distance_m * *direction;
+  const Eigen::Vector3d p_rig = of.T_rig_camera * p;
+  const Eigen::Matrix<double, 2, 3> J_point =
+      Eigen::Vector2d(of.camera.fx, of.camera.fy).asDiagonal() * distort(of.camera.distortion, p).J_xy_point;
+  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(2, layout.size + 6);
+  if (!layout.intrinsics.empty()) {
+    const auto J_intrinsics = intrinsics_jacobian(of.camera, p);
+    for (int i = 0; i < layout.camera_size; ++i) {
+      J.col(layout.intrinsics_at(index) + i) = J_intrinsics.col(layout.intrinsics[static_cast<std::size_t>(i)]);
+    }
+  }
+  if (layout.camera_poses && index > 0) {
+    J.middleCols<3>(layout.pose_at(index)) = -J_point;
+    J.middleCols<3>(layout.pose_at(index) + 3) = J_point * skew(p);
+  }
+  const Eigen::Matrix<double, 2, 3> J_rig = J_point * of.T_rig_camera.linear().transpose();
+  J.middleCols<3>(layout.size) = J_rig;
+  J.middleCols<3>(layout.size + 3) = -J_rig * skew(p_rig);
+  return J;
+}
+
+std::vector<Eigen::MatrixXd> pixel_jacobians(const BoardBundle& bundle, const BundleFreedom& freedom) {
+  constexpr int kPlaces = 5;
+  const double distance_m = median_origin_distance(bundle);
+  std::vector<Eigen::MatrixXd> all;
+  for (std::size_t c = 0; c < bundle.cameras.size(); ++c) {
+    const Camera& camera = bundle.cameras[c].camera;
+    for (int row = 0; row < kPlaces; ++row) {
+      for (int column = 0; column < kPlaces; ++column) {
+        const Eigen::Vector2d pixel((column + 0.5) * camera.width / kPlaces, (row + 0.5) * camera.height / kPlaces);
+        auto J = pixel_jacobian(bundle, freedom, static_cast<int>(c), pixel, distance_m);
+        if (J) all.push_back(std::move(*J));
+      }
+    }
+  }
+  return all;
+}
+
+std::optional<Eigen::Matrix2d> pixel_covariance(const BundleCovariance& covariance, const BoardBundle& bundle,
+                                                const BundleFreedom& freedom, int index, const Eigen::Vector2d& pixel,
+                                                double distance_m) {
+  const auto J = pixel_jacobian(bundle, freedom, index, pixel, distance_m);
+  if (!J) return std::nullopt;
+  return *J * covariance.shared_and_motion * J->transpose();
+}
+
+double median_distance_m(const BoardBundle& bundle, const BoardShape& shape, int index) {
+  const Eigen::Vector3d centre = 0.5 * (shape.corners_m.front() + shape.corners_m.back());
+  BoardBundle seen;
+  for (const Eigen::Isometry3d& T : bundle.T_rig_board) {
+    const auto& camera = bundle.cameras[static_cast<std::size_t>(index)];
+    seen.T_rig_board.emplace_back(Eigen::Translation3d(camera.T_rig_camera.inverse() * (T * centre)));
+  }
+  return median_origin_distance(seen);
+}
+
+UncertaintyMap uncertainty_map(const BundleCovariance& covariance, const BoardBundle& bundle,
+                               const BundleFreedom& freedom, int index, double distance_m, int columns) {
+  const Camera& camera = bundle.cameras[static_cast<std::size_t>(index)].camera;
+  UncertaintyMap map;
+  map.columns = columns;
+  map.step_px = (camera.width - 1.0) / (columns - 1);
+  map.rows = 1 + static_cast<int>(std::floor((camera.height - 1.0) / map.step_px));
+  for (int row = 0; row < map.rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      const auto C =
+          pixel_covariance(covariance, bundle, freedom, index, map.step_px * Eigen::Vector2d(column, row), distance_m);
+      map.sigma_px.push_back(C ? larger_sigma(*C) : std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  return map;
+}
+
+}  // namespace alidade
