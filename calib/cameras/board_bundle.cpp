@@ -42,7 +42,7 @@ ViewColumns columns_of(const BundleLayout& layout, int camera) {
     for (int i = 0; i < count; ++i) columns.shared.push_back(first + i);
     return at;
   };
-  columns.intrinsics = append(layout.intrinsics_at(camera), layout.camera_size);
+  columns.intrinsics = append(layout.intrinsics_at(camera), static_cast<int>(layout.free_of(camera).size()));
   if (layout.camera_poses && camera > 0) columns.pose = append(layout.pose_at(camera), 6);
   if (layout.warp) columns.warp = append(layout.warp_at, 2);
   columns.frame = static_cast<int>(columns.shared.size());
@@ -154,13 +154,15 @@ BoardShape shape_of(const Board& board) {
 }
 
 BundleLayout::BundleLayout(const BoardBundle& bundle, const BundleFreedom& freedom)
-    : intrinsics(freedom.intrinsics),
-      camera_size(static_cast<int>(freedom.intrinsics.size())),
-      pose_start(camera_size * static_cast<int>(bundle.cameras.size())),
-      warp_at(pose_start + (freedom.camera_poses ? 6 * (static_cast<int>(bundle.cameras.size()) - 1) : 0)),
-      size(warp_at + (freedom.warp ? 2 : 0)),
-      camera_poses(freedom.camera_poses),
-      warp(freedom.warp) {}
+    : intrinsics(freedom.intrinsics), camera_poses(freedom.camera_poses), warp(freedom.warp) {
+  intrinsics.resize(bundle.cameras.size());
+  for (const auto& of_camera : intrinsics) {
+    starts.push_back(pose_start);
+    pose_start += static_cast<int>(of_camera.size());
+  }
+  warp_at = pose_start + (camera_poses ? 6 * (static_cast<int>(bundle.cameras.size()) - 1) : 0);
+  size = warp_at + (warp ? 2 : 0);
+}
 
 BundleEquations bundle_equations(const BoardBundle& bundle, const BoardShape& shape, std::span<const BundleView> views,
                                  const BundleFreedom& freedom) {
@@ -176,8 +178,8 @@ BundleEquations bundle_equations(const BoardBundle& bundle, const BoardShape& sh
   e.H_frame_shared.assign(frames, Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(6, layout.size));
   for (const BundleView& view : views) {
     const ViewColumns columns = columns_of(layout, view.camera);
-    add_view(linearise(bundle, shape, view, columns, layout.intrinsics), columns, static_cast<std::size_t>(view.frame),
-             e);
+    add_view(linearise(bundle, shape, view, columns, layout.free_of(view.camera)), columns,
+             static_cast<std::size_t>(view.frame), e);
   }
   for (const BundlePrior& prior : bundle_priors(bundle, shape, freedom)) {
     e.H(prior.place, prior.place) += prior.information;

@@ -56,8 +56,9 @@ struct BoardBundle {
 };
 
 struct BundleFreedom {
-  std::vector<int> intrinsics;  ///< places in intrinsics() that are found, of every camera; empty: they stand
-  bool camera_poses = true;     ///< of all cameras but the first
+  /// Places in intrinsics() that are found, by camera; a camera that is left out or whose list is empty stands.
+  std::vector<std::vector<int>> intrinsics;
+  bool camera_poses = true;  ///< of all cameras but the first
   bool warp = true;
   double warp_sigma_share =
       0.005;  ///< a board is flat to this share of its diagonal: what holds the warp if nothing else
@@ -67,11 +68,12 @@ struct BundleFreedom {
 struct BundleLayout {
   BundleLayout(const BoardBundle& bundle, const BundleFreedom& freedom);
 
-  int intrinsics_at(int camera) const { return camera * camera_size; }
+  int intrinsics_at(int camera) const { return starts[static_cast<std::size_t>(camera)]; }
+  const std::vector<int>& free_of(int camera) const { return intrinsics[static_cast<std::size_t>(camera)]; }
   int pose_at(int camera) const { return pose_start + 6 * (camera - 1); }  ///< camera >= 1
 
-  std::vector<int> intrinsics;
-  int camera_size = 0;  ///< free intrinsics of a camera
+  std::vector<std::vector<int>> intrinsics;  ///< by camera
+  std::vector<int> starts;                   ///< of their places
   int pose_start = 0;
   int warp_at = 0;
   int size = 0;

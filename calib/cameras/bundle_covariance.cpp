@@ -137,7 +137,9 @@ std::optional<BundleCovariance> bundle_covariance(const BundleFit& fit, const Bo
 }
 
 Eigen::VectorXd intrinsics_sigma(const BundleCovariance& covariance, const BundleLayout& layout, int camera) {
-  return covariance.shared_and_motion.diagonal().segment(layout.intrinsics_at(camera), layout.camera_size).cwiseSqrt();
+  return covariance.shared_and_motion.diagonal()
+      .segment(layout.intrinsics_at(camera), static_cast<Eigen::Index>(layout.free_of(camera).size()))
+      .cwiseSqrt();
 }
 
 Eigen::MatrixXd intrinsics_covariance(const BundleCovariance& covariance, const BundleLayout& layout,
@@ -145,8 +147,9 @@ Eigen::MatrixXd intrinsics_covariance(const BundleCovariance& covariance, const 
   const Eigen::Index n = intrinsics(camera).size();
   Eigen::MatrixXd C = Eigen::MatrixXd::Zero(n, n);
   const int at = layout.intrinsics_at(index);
-  C(layout.intrinsics, layout.intrinsics) =
-      covariance.shared_and_motion.block(at, at, layout.camera_size, layout.camera_size);
+  const std::vector<int>& free = layout.free_of(index);
+  const auto size = static_cast<Eigen::Index>(free.size());
+  C(free, free) = covariance.shared_and_motion.block(at, at, size, size);
   return C;
 }
 

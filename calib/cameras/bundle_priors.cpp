@@ -23,8 +23,9 @@ std::vector<BundlePrior> bundle_priors(const BoardBundle& bundle, const BoardSha
     const Camera& camera = bundle.cameras[i].camera;
     const double radius = 0.5 * std::hypot(camera.width, camera.height) / std::max(camera.fx, 1.0);
     const Intrinsics values = intrinsics(camera);
-    for (std::size_t j = 0; j < layout.intrinsics.size(); ++j) {
-      const int place = layout.intrinsics[j];
+    const std::vector<int>& free = layout.free_of(static_cast<int>(i));
+    for (std::size_t j = 0; j < free.size(); ++j) {
+      const int place = free[j];
       if (place < 4) continue;
       const double sigma = std::pow(radius, -power_of(camera.distortion, place - 4));
       priors.push_back(

@@ -9,7 +9,7 @@
 #include "calib/cameras/board_bundle.h"
 
 // Why not Ceres: there are at most some dozens of shared parameters and six per frame, and the equations are wanted
-// again for the covariances. Eliminating the frames by hand takes a tenth of Ceres' time (tests compare the two).
+// again for the covariances. Eliminating the frames by hand takes a tenth of Ceres' time.
 namespace alidade {
 namespace {
 
@@ -59,8 +59,8 @@ BoardBundle moved(BoardBundle bundle, const BundleLayout& layout, const BundleSt
   for (std::size_t i = 0; i < bundle.cameras.size(); ++i) {
     const int camera = static_cast<int>(i);
     Intrinsics values = intrinsics(bundle.cameras[i].camera);
-    for (std::size_t j = 0; j < layout.intrinsics.size(); ++j) {
-      values[layout.intrinsics[j]] += step.shared[layout.intrinsics_at(camera) + static_cast<int>(j)];
+    for (std::size_t j = 0; j < layout.intrinsics[i].size(); ++j) {
+      values[layout.intrinsics[i][j]] += step.shared[layout.intrinsics_at(camera) + static_cast<int>(j)];
     }
     bundle.cameras[i].camera = with_intrinsics(bundle.cameras[i].camera, values);
     if (layout.camera_poses && camera > 0) {

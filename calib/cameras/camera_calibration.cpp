@@ -97,7 +97,8 @@ int used_corners(const BundleFit& fit) {
 }
 
 Outcome judge(const CameraCalibration& calibration, const CameraCalibrationOptions& options, bool has_covariance) {
-  const int parameters = static_cast<int>(calibration.freedom.intrinsics.size()) + 2 + 6 * calibration.distinct_views;
+  const int parameters =
+      static_cast<int>(calibration.freedom.intrinsics.front().size()) + 2 + 6 * calibration.distinct_views;
   if (2 * used_corners(calibration.fit) < 2 * parameters) return Outcome::TooFewCorners;
   if (calibration.tilt_spread_rad < options.least_tilt_deg * kDegree) return Outcome::NoTilt;
   if (!has_covariance || find_fault(calibration.camera)) return Outcome::Undetermined;
@@ -109,7 +110,7 @@ Outcome judge(const CameraCalibration& calibration, const CameraCalibrationOptio
 void finish(const BoardShape& shape, const CameraCalibrationOptions& options, CameraCalibration& calibration) {
   const BundleFit& fit = calibration.fit;
   calibration.camera = fit.bundle.cameras.front().camera;
-  calibration.freedom.intrinsics = free_intrinsics(calibration.lens);
+  calibration.freedom.intrinsics = {free_intrinsics(calibration.lens)};
   calibration.rms_px = rms_px(fit.bundle, shape, fit.views);
   calibration.rms_all_px = rms_px(fit.bundle, shape, fit.views, true);
   calibration.tilt_spread_rad = tilt_spread_rad(fit.bundle, fit.views, 0);

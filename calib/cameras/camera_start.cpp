@@ -101,7 +101,7 @@ std::optional<CameraStart> start_camera_bundle(LensModel lens, const ImageExtent
   }
   if (placed < 2) return std::nullopt;
   BundleFreedom few;  // focal lengths and the strongest coefficient first: from afar, more would overfit
-  few.intrinsics = {0, 1, 4};
+  few.intrinsics = {{0, 1, 4}};
   few.warp = false;
   start.bundle = solve_bundle(std::move(start.bundle), shape, start.views, few, 30).bundle;
   return start;

@@ -38,7 +38,7 @@ std::optional<BundleFit> fit_camera(LensModel lens, const ImageExtent& image, co
   auto start = start_camera_bundle(lens, image, shape, views);
   if (!start) return std::nullopt;
   BundleFreedom freedom;
-  freedom.intrinsics = free_intrinsics(lens);
+  freedom.intrinsics = {free_intrinsics(lens)};
   return fit_bundle(start->bundle, shape, std::move(start->views), freedom, options);
 }
 

@@ -38,11 +38,9 @@ std::optional<Eigen::MatrixXd> pixel_jacobian(const BoardBundle& bundle, const B
   const Eigen::Matrix<double, 2, 3> J_point =
       Eigen::Vector2d(of.camera.fx, of.camera.fy).asDiagonal() * distort(of.camera.distortion, p).J_xy_point;
   Eigen::MatrixXd J = Eigen::MatrixXd::Zero(2, layout.size + 6);
-  if (!layout.intrinsics.empty()) {
-    const auto J_intrinsics = intrinsics_jacobian(of.camera, p);
-    for (int i = 0; i < layout.camera_size; ++i) {
-      J.col(layout.intrinsics_at(index) + i) = J_intrinsics.col(layout.intrinsics[static_cast<std::size_t>(i)]);
-    }
+  const auto J_intrinsics = intrinsics_jacobian(of.camera, p);
+  for (int i = 0; const int place : layout.free_of(index)) {
+    J.col(layout.intrinsics_at(index) + i++) = J_intrinsics.col(place);
   }
   if (layout.camera_poses && index > 0) {
     J.middleCols<3>(layout.pose_at(index)) = -J_point;
