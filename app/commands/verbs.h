@@ -13,6 +13,7 @@ std::vector<Verb> all_verbs();
 
 Verb track_camera_verb();
 Verb track_body_verb();
+Verb calibrate_camera_verb();
 Verb calibrate_detectors_verb();
 Verb map_verb();
 Verb simulate_camera_verb();
