@@ -11,20 +11,21 @@ namespace alidade {
 
 enum class BoardKind { Chessboard, Charuco, AprilGrid };
 
-/// Two ways in which ChArUco boards are printed: OpenCV 4.6 and later put a marker or a black square into the top-left
-/// corner by turns with the number of rows. ("Legacy" boards of an even number of rows start with a white square.)
+/// Two ways in which ChArUco boards are printed: OpenCV 4.6 and later put a black square into the top-left corner;
+/// before
+/// ("legacy"), boards with an even number of rows had a marker there.
 enum class CharucoLayout { BlackFirst, MarkerFirst };
 
 /// A flat calibration pattern. Its frame: x along the rows, y down the columns, z away from who looks at the print, the
 /// origin at corner 0; all corners have z = 0.
 struct Board {
   BoardKind kind = BoardKind::Chessboard;
-  int columns = 9;          ///< chessboard: inner corners along a row; ChArUco: squares; AprilGrid: tags
-  int rows = 6;             ///< the same down a column
-  double square_m = 0.025;  ///< side of a square; AprilGrid: of a tag
-  double marker_m = 0;      ///< ChArUco: side of a marker
-  double gap_m = 0;         ///< AprilGrid: from one tag to the next
-  std::string dictionary;   ///< of the markers, OpenCV's name without "DICT_": "4X4_50", "APRILTAG_36h11"
+  int columns = 9;           ///< chessboard: inner corners along a row; ChArUco: squares; AprilGrid: tags
+  int rows = 6;              ///< the same down a column
+  double square_m = 0.025;   ///< side of a square; AprilGrid: of a tag
+  double marker_m = 0;       ///< ChArUco: side of a marker
+  double gap_m = 0;          ///< AprilGrid: from one tag to the next
+  std::string dictionary{};  ///< of the markers, OpenCV's name without "DICT_": "4X4_50", "APRILTAG_36h11"
   CharucoLayout layout = CharucoLayout::BlackFirst;
   bool operator==(const Board&) const = default;
 };
