@@ -122,8 +122,8 @@ BoardImages read_board_images(const std::string& source, const Board& board, con
     std::vector<Found> batch = next_batch(*frames, board);
     if (batch.empty()) break;
     for (Found& found : batch) keep(found, images);
-    context.progress({"finding the board in " + source, static_cast<std::int64_t>(images.images.size()),
-                      count.value_or(0), ""});
+    context.progress(
+        {"finding the board in " + source, static_cast<std::int64_t>(images.images.size()), count.value_or(0), ""});
   }
   if (const auto fault = frames->fault()) context.warn(source + ": " + *fault);
   images.seen = static_cast<int>(images.views.size());

@@ -74,9 +74,9 @@ cv::Mat draw_coverage(const BundleFit& fit, int camera) {
 cv::Mat draw_residuals(const BundleFit& fit, const BoardShape& shape, const ResidualField& field, int camera) {
   const double typical_px = std::max(1e-6, std::hypot(field.noise_px, field.systematic_px));
   const double enlarged = round_down(0.025 * camera_of(fit, camera).width / typical_px);
-  ImageDrawing drawing(camera_of(fit, camera),
-                       fmt::format("residuals, enlarged {:.0f} times; thick: means of cells, {:.0f} times", enlarged,
-                                   2 * enlarged));
+  ImageDrawing drawing(
+      camera_of(fit, camera),
+      fmt::format("residuals, enlarged {:.0f} times; thick: means of cells, {:.0f} times", enlarged, 2 * enlarged));
   for (const BundleView& view : fit.views) {
     if (view.camera != camera) continue;
     const auto residuals = residuals_px(fit.bundle, shape, view);

@@ -121,7 +121,7 @@ ReportSection undistorted_section(const Camera& camera, const cv::Mat& sample) {
   ReportSection section{"Without distortion", {}, {}, {}};
   const auto pinhole = undistorted_camera(camera);
   if (!pinhole || sample.empty()) {
-    section.paragraphs.push_back("This lens sees too wide for one pinhole image: alidade undistort --focal-px.");
+    section.paragraphs = {"This lens sees too wide for one pinhole image: alidade undistort --focal-px."};
     return section;
   }
   const cv::Mat straight = undistorted_image(sample, undistortion_map(camera, *pinhole));
@@ -142,7 +142,8 @@ ReportSection bad_views_section(const BundleFit& fit, int camera, const std::vec
     Overlay overlay;
     overlay.status = views[i].name;
     for (std::size_t j = 0; j < view->corners.size(); ++j) {
-      const Eigen::Vector2d pixel = scale * (view->corners[j].pixel + Eigen::Vector2d(0.5, 0.5)) - Eigen::Vector2d(0.5, 0.5);
+      const Eigen::Vector2d pixel =
+          scale * (view->corners[j].pixel + Eigen::Vector2d(0.5, 0.5)) - Eigen::Vector2d(0.5, 0.5);
       overlay.tracks.push_back({pixel, {}, view->weights[j] > 0 ? TrackState::Tracked : TrackState::Rejected, {}});
     }
     section.figures.push_back({draw_overlay(thumbnail, overlay), "", FigureFormat::Jpeg});

@@ -14,7 +14,7 @@
 namespace alidade {
 namespace {
 
-constexpr double kGoodPixel = 0.5;     // px: an uncertainty that most uses do not notice
+constexpr double kGoodPixel = 0.5;      // px: an uncertainty that most uses do not notice
 constexpr double kLeastCoverage = 0.5;  // of the image's cells
 
 std::optional<double> sigma_px(const std::optional<Eigen::Matrix2d>& covariance) {
@@ -103,7 +103,8 @@ std::array<UncertainPlace, 3> uncertain_places(const BundleCovariance& covarianc
 
 std::string describe(const ViewVerdict& verdict, const BoardView& view, const std::vector<BoardView>& views) {
   switch (verdict.use) {
-    case ViewUse::Used: return "used";
+    case ViewUse::Used:
+      return "used";
     case ViewUse::PartlyUsed:
       return fmt::format("used; {} of {} corners lie off and were cut", verdict.outliers, view.corners.size());
     case ViewUse::Rejected:
@@ -119,22 +120,25 @@ void add_warnings(CameraCalibrationRun& run) {
   const CameraCalibration& c = run.result;
   auto& warnings = run.warnings;
   if (run.board.is_guessed) {
-    warnings.push_back(fmt::format("the board was guessed: {} (--board {})", describe(run.board.board),
-                                   board_text(run.board.board)));
+    warnings.push_back(
+        fmt::format("the board was guessed: {} (--board {})", describe(run.board.board), board_text(run.board.board)));
   }
   for (std::size_t i = 0; i < c.verdicts.size(); ++i) {
     if (c.verdicts[i].use != ViewUse::Rejected && c.verdicts[i].use != ViewUse::Repeated) continue;
-    warnings.push_back(run.images.views[i].name + ": " + describe(c.verdicts[i], run.images.views[i], run.images.views));
+    warnings.push_back(run.images.views[i].name + ": " +
+                       describe(c.verdicts[i], run.images.views[i], run.images.views));
   }
   if (!lens_fits(c.residuals)) {
-    warnings.push_back(fmt::format("the lens '{}' does not fit: {:.3f} px of systematic error remain beside {:.3f} px "
-                                   "of noise",
-                                   name_of(c.lens), c.residuals.systematic_px, c.residuals.noise_px));
+    warnings.push_back(
+        fmt::format("the lens '{}' does not fit: {:.3f} px of systematic error remain beside {:.3f} px "
+                    "of noise",
+                    name_of(c.lens), c.residuals.systematic_px, c.residuals.noise_px));
   }
   if (c.covariance.within_views > 1) {
-    warnings.push_back(fmt::format("corners of an image err together (a board that is not flat, motion, light): "
-                                   "uncertainties are {:.1f} times those of independent errors",
-                                   std::sqrt(c.covariance.within_views)));
+    warnings.push_back(
+        fmt::format("corners of an image err together (a board that is not flat, motion, light): "
+                    "uncertainties are {:.1f} times those of independent errors",
+                    std::sqrt(c.covariance.within_views)));
   }
   if (coverage(c.residuals) < kLeastCoverage) {
     warnings.push_back(fmt::format("corners cover {:.0f} % of the image; show the board at its edges and corners too",
@@ -157,8 +161,7 @@ std::vector<ReportRow> figure_rows(const CameraCalibrationRun& run) {
   const CalibrationVerdict verdict = verdict_of(run);
   std::vector<ReportRow> rows{
       {"verdict", verdict.text, "", verdict.is_good ? Verdict::Good : Verdict::Poor},
-      {"board", describe(run.board.board), "", Verdict::None,
-       run.board.is_guessed ? "guessed" : ""},
+      {"board", describe(run.board.board), "", Verdict::None, run.board.is_guessed ? "guessed" : ""},
       {"images", fmt::format("{}", run.images.images.size()), "", Verdict::None,
        fmt::format("{} with the board, {} used", run.images.seen,
                    count_use(c, ViewUse::Used) + count_use(c, ViewUse::PartlyUsed))}};
@@ -204,9 +207,8 @@ nlohmann::json summary_of(const CameraCalibrationRun& run) {
     summary["intrinsics"][name] = {{"value", values[place]}, {"sigma", sigma[i]}};
   }
   for (const LensTrial& trial : c.trials) {
-    summary["lenses"].push_back({{"lens", name_of(trial.lens)},
-                                 {"rms_px", trial.training_rms_px},
-                                 {"held_out_rms_px", trial.held_out_rms_px}});
+    summary["lenses"].push_back(
+        {{"lens", name_of(trial.lens)}, {"rms_px", trial.training_rms_px}, {"held_out_rms_px", trial.held_out_rms_px}});
   }
   for (const UncertainPlace& place : places_of(run)) {
     if (place.near_px) summary["pixel_sigma_px"][place.name] = {{"near", *place.near_px}, {"far", *place.far_px}};

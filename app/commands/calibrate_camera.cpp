@@ -17,9 +17,10 @@ class CalibrateCameraCommand : public Command {
   explicit CalibrateCameraCommand(CLI::App& flags) {
     flags.add_option("SOURCE", source_, "images of the board: a folder, a glob in quotes, a list, or a video")
         ->required();
-    flags.add_option("--board", board_,
-                     "e.g. chessboard:9x6:25mm (inner corners), charuco:8x6:30mm:22mm:5X5_100, aprilgrid:6x6:88mm:26.4mm;"
-                     " left out: guessed");
+    flags.add_option(
+        "--board", board_,
+        "e.g. chessboard:9x6:25mm (inner corners), charuco:8x6:30mm:22mm:5X5_100, aprilgrid:6x6:88mm:26.4mm;"
+        " left out: guessed");
     bind(options_, choice_);
   }
 

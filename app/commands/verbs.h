@@ -14,6 +14,8 @@ std::vector<Verb> all_verbs();
 Verb track_camera_verb();
 Verb track_body_verb();
 Verb calibrate_camera_verb();
+Verb calibrate_stereo_verb();
+Verb calibrate_rig_verb();
 Verb calibrate_detectors_verb();
 Verb map_verb();
 Verb simulate_camera_verb();

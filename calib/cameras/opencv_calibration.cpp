@@ -30,9 +30,14 @@ std::optional<OpencvCalibration> calibrate_by_opencv(const ImageExtent& image, c
     return std::nullopt;
   }
   const auto k = [&](int i) { return distortion.at<double>(i); };
-  result.camera = {image.width,         image.height,        K.at<double>(0, 0),
-                   K.at<double>(1, 1),  K.at<double>(0, 2),  K.at<double>(1, 2),
-                   BrownConrady{k(0), k(1), k(2), k(3), k(4)}, 0.0};
+  result.camera = {image.width,
+                   image.height,
+                   K.at<double>(0, 0),
+                   K.at<double>(1, 1),
+                   K.at<double>(0, 2),
+                   K.at<double>(1, 2),
+                   BrownConrady{k(0), k(1), k(2), k(3), k(4)},
+                   0.0};
   return std::isfinite(result.rms_px) ? std::optional(result) : std::nullopt;
 }
 

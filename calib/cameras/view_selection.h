@@ -11,8 +11,8 @@
 namespace alidade {
 
 struct ViewSelectionOptions {
-  int most = 60;                ///< views; more add little and cost time
-  double still_px = 1.0;        ///< a board that moved further between two successive frames is blurred or skewed
+  int most = 60;                 ///< views; more add little and cost time
+  double still_px = 1.0;         ///< a board that moved further between two successive frames is blurred or skewed
   double distinct_share = 0.03;  ///< of the image's width: by so much a view has to differ from all chosen ones
 };
 
