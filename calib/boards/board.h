@@ -19,12 +19,12 @@ enum class CharucoLayout { BlackFirst, MarkerFirst };
 /// origin at corner 0; all corners have z = 0.
 struct Board {
   BoardKind kind = BoardKind::Chessboard;
-  int columns = 9;          ///< chessboard: inner corners along a row; ChArUco: squares; AprilGrid: tags
-  int rows = 6;             ///< the same down a column
-  double square_m = 0.025;  ///< side of a square; AprilGrid: of a tag
-  double marker_m = 0;      ///< ChArUco: side of a marker
-  double gap_m = 0;         ///< AprilGrid: from one tag to the next
-  std::string dictionary;   ///< of the markers, OpenCV's name without "DICT_": "4X4_50", "APRILTAG_36h11"
+  int columns = 9;           ///< chessboard: inner corners along a row; ChArUco: squares; AprilGrid: tags
+  int rows = 6;              ///< the same down a column
+  double square_m = 0.025;   ///< side of a square; AprilGrid: of a tag
+  double marker_m = 0;       ///< ChArUco: side of a marker
+  double gap_m = 0;          ///< AprilGrid: from one tag to the next
+  std::string dictionary{};  ///< of the markers, OpenCV's name without "DICT_": "4X4_50", "APRILTAG_36h11"
   CharucoLayout layout = CharucoLayout::BlackFirst;
   bool operator==(const Board&) const = default;
 };
