@@ -89,6 +89,7 @@ void validate(const CornerRefinementOptions& o) {
   if (!(o.half_width > 0 && o.half_width < 1)) {
     throw std::invalid_argument(fmt::format("half_width must lie between 0 and 1, got {}", o.half_width));
   }
+  if (!(o.band > 0)) throw std::invalid_argument(fmt::format("band must be > 0 squares, got {}", o.band));
   if (!(o.most_half_width_px >= 4)) {
     throw std::invalid_argument(fmt::format("most_half_width_px must be >= 4, got {}", o.most_half_width_px));
   }
@@ -115,8 +116,11 @@ std::vector<BoardCorner> refine_corners(const cv::Mat& grey, std::span<const Boa
   for (const BoardCorner& corner : corners) {
     const auto step_x = step_along(lattice, corner.id, 1, 0), step_y = step_along(lattice, corner.id, 0, 1);
     if (!step_x || !step_y) continue;
-    const CrossingStart start{
-        .pixel = corner.pixel, .step_x = *step_x, .step_y = *step_y, .half_width = options.half_width};
+    const CrossingStart start{.pixel = corner.pixel,
+                              .step_x = *step_x,
+                              .step_y = *step_y,
+                              .half_width = options.half_width,
+                              .band = options.band};
     result.push_back(refined(grey, corner.id, start, options));
   }
   return result;

@@ -40,7 +40,8 @@ std::vector<Sample> samples_of(const cv::Mat& grey, const CrossingStart& start) 
     for (int x = from(start.pixel.x() - reach.x()); x <= to(start.pixel.x() + reach.x(), grey.cols);
          x += start.stride) {
       const Vector2d offset = Vector2d(x, y) - start.pixel;
-      if ((inverse * offset).lpNorm<Eigen::Infinity>() > start.half_width) continue;
+      const Vector2d steps_away = (inverse * offset).cwiseAbs();
+      if (steps_away.maxCoeff() > start.half_width || steps_away.minCoeff() > start.band) continue;
       samples.push_back({offset, static_cast<double>(grey.at<uchar>(y, x))});
     }
   }

@@ -10,11 +10,12 @@
 namespace alidade {
 
 /// What is known of a crossing before the fit. The window is the parallelogram of all pixels p with
-/// p - pixel = u * step_x + v * step_y and |u|, |v| <= half_width.
+/// p - pixel = u * step_x + v * step_y, |u| and |v| <= half_width, one of them <= band.
 struct CrossingStart {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();   ///< px, well inside the window
   Eigen::Vector2d step_x = {1, 0}, step_y = {0, 1};  ///< to the next crossings, along the two edges, px
   double half_width = 0.4;                           ///< of the window, in steps
+  double band = 1;     ///< to either side of an edge, in steps; where squares carry marks, what is free of them
   int stride = 1;      ///< every so many pixels of the window's rows and columns are looked at
   double blur_px = 1;  ///< to start from
 };

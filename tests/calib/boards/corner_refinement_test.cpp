@@ -30,7 +30,7 @@ double largest_error(const test::RenderedChessboard& board, std::span<const Boar
 }
 
 TEST(CornerRefinement, FindsCornersOfSquaresOfAnySize) {
-  // Noise of 2 in a contrast of 85 allows about 2 / 85 / sqrt(edge pixels) = 0.01 px on the smallest squares.
+  // Noise of 2 in a contrast of 85 allows 0.013 px a coordinate on the smallest squares, 0.003 px on the largest.
   for (const double square_px : {10.0, 16.0, 30.0, 55.0}) {
     const auto board = test::placed_chessboard(4, 3, {.square_px = square_px, .turn_rad = 0.2, .tilt = {0.04, 0.02}});
     const auto refined =
@@ -39,6 +39,39 @@ TEST(CornerRefinement, FindsCornersOfSquaresOfAnySize) {
     EXPECT_LT(largest_error(board, refined), 0.05) << square_px;
     for (const BoardCorner& corner : refined) EXPECT_LT(corner.sigma_px, 0.04) << square_px;
   }
+}
+
+TEST(CornerRefinement, FindsLargeCornersFromFarAway) {
+  const auto board = test::placed_chessboard(3, 3, {.square_px = 80, .turn_rad = 0.1});
+  const auto refined = refine_corners(test::with_noise(test::render(board), 2, 1), started_beside(board, 13), 3);
+  EXPECT_LT(largest_error(board, refined), 0.02);
+}
+
+TEST(CornerRefinement, ClaimsNoMoreThanItsFloor) {
+  const auto board = test::placed_chessboard(3, 3, {});
+  for (const BoardCorner& corner : refine_corners(test::render(board), started_beside(board, 1), 3)) {
+    EXPECT_EQ(corner.sigma_px, 0.02);
+  }
+}
+
+TEST(CornerRefinement, LooksNoFartherThanItsWindowAndBand) {
+  // Marks in the middle of the squares, 0.4 to 0.6 squares from the edges, and larger ones, 0.2 to 0.8 squares from
+  // them.
+  const auto board = test::placed_chessboard(4, 3, {.square_px = 30});
+  const cv::Mat image = test::render(board);
+  const auto refined_with_marks = [&](double half_side, const CornerRefinementOptions& options) {
+    cv::Mat marked = image.clone();
+    for (const Vector2d& corner : test::true_corners(board)) {
+      const Vector2d low = corner.array() + (0.5 - half_side) * 30, high = corner.array() + (0.5 + half_side) * 30;
+      cv::rectangle(marked, {cvCeil(low.x()), cvCeil(low.y())}, {cvFloor(high.x()), cvFloor(high.y())}, cv::Scalar(128),
+                    cv::FILLED);
+    }
+    return refine_corners(marked, started_beside(board, 0.1), 4, options);
+  };
+  const auto plain = refine_corners(image, started_beside(board, 0.1), 4);
+  const auto marked = refined_with_marks(0.09, {});
+  for (int i = 0; i < 12; ++i) EXPECT_EQ(marked[i].pixel, plain[i].pixel);
+  EXPECT_LT(largest_error(board, refined_with_marks(0.3, {.band = 0.19})), 0.01);
 }
 
 TEST(CornerRefinement, SeesMotionBlurOnLargeSquares) {
@@ -82,6 +115,7 @@ TEST(CornerRefinement, RefusesImpossibleInput) {
   EXPECT_THROW(refine_corners(image, {}, 0), std::invalid_argument);
   EXPECT_THROW(refine_corners(image, std::vector<BoardCorner>{{0, {NAN, 1}}}, 3), std::invalid_argument);
   EXPECT_THROW(validate(CornerRefinementOptions{.half_width = 1.5}), std::invalid_argument);
+  EXPECT_THROW(validate(CornerRefinementOptions{.band = 0}), std::invalid_argument);
   EXPECT_THROW(validate(CornerRefinementOptions{.most_half_width_px = 1}), std::invalid_argument);
   EXPECT_THROW(validate(CornerRefinementOptions{.least_sigma_px = 0}), std::invalid_argument);
   EXPECT_THROW(validate(CornerRefinementOptions{.unfitted_sigma_px = 0.01}), std::invalid_argument);
