@@ -8,7 +8,7 @@ std::vector<Verb> all_verbs() {
           track_body_verb(),
           calibrate_detectors_verb(),
           map_verb(),
-          
+          undistort_verb(),
           convert_verb(),
           simulate_camera_verb(),
           simulate_body_verb(),

@@ -15,6 +15,7 @@ Verb track_camera_verb();
 Verb track_body_verb();
 Verb calibrate_detectors_verb();
 Verb map_verb();
+Verb undistort_verb();
 Verb convert_verb();
 Verb simulate_camera_verb();
 Verb simulate_body_verb();
