@@ -11,6 +11,8 @@ std::vector<Verb> all_verbs() {
           calibrate_rig_verb(),
           calibrate_detectors_verb(),
           map_verb(),
+          undistort_verb(),
+          convert_verb(),
           simulate_camera_verb(),
           simulate_body_verb(),
           experiment_camera_verb(),

@@ -18,6 +18,8 @@ Verb calibrate_stereo_verb();
 Verb calibrate_rig_verb();
 Verb calibrate_detectors_verb();
 Verb map_verb();
+Verb undistort_verb();
+Verb convert_verb();
 Verb simulate_camera_verb();
 Verb simulate_body_verb();
 Verb experiment_camera_verb();
