@@ -138,6 +138,27 @@ void add_view(const ViewLinearisation& linear, const ViewColumns& columns, std::
   e.cost += linear.r.squaredNorm();
 }
 
+// A corner moves its own pixel only, as its board's translation does.
+void add_corners(const ViewLinearisation& linear, const ViewColumns& columns, const BundleLayout& layout,
+                 const BundleView& view, BundleEquations& e) {
+  const auto frame = static_cast<std::size_t>(view.frame);
+  for (std::size_t i = 0; i < view.corners.size(); ++i) {
+    if (view.weights[i] <= 0) continue;
+    const auto row = static_cast<Eigen::Index>(2 * i);
+    const Eigen::Matrix<double, 2, 3> J = linear.J.block<2, 3>(row, columns.frame);
+    const int at = layout.corners_at + 3 * view.corners[i].id;
+    e.H.block<3, 3>(at, at) += J.transpose() * J;
+    e.g.segment<3>(at) += J.transpose() * linear.r.segment<2>(row);
+    e.H_frame_shared[frame].middleCols<3>(at) += linear.J.block<2, 6>(row, columns.frame).transpose() * J;
+    for (int j = 0; j < columns.frame; ++j) {
+      const Eigen::RowVector3d cross = linear.J.block<2, 1>(row, j).transpose() * J;
+      const int other = columns.shared[static_cast<std::size_t>(j)];
+      e.H.block<1, 3>(other, at) += cross;
+      e.H.block<3, 1>(at, other) += cross.transpose();
+    }
+  }
+}
+
 }  // namespace
 
 BoardShape shape_of(const Board& board) {
@@ -154,14 +175,15 @@ BoardShape shape_of(const Board& board) {
 }
 
 BundleLayout::BundleLayout(const BoardBundle& bundle, const BundleFreedom& freedom)
-    : intrinsics(freedom.intrinsics), camera_poses(freedom.camera_poses), warp(freedom.warp) {
+    : intrinsics(freedom.intrinsics), camera_poses(freedom.camera_poses), warp(freedom.warp), corners(freedom.corners) {
   intrinsics.resize(bundle.cameras.size());
   for (const auto& of_camera : intrinsics) {
     starts.push_back(pose_start);
     pose_start += static_cast<int>(of_camera.size());
   }
   warp_at = pose_start + (camera_poses ? 6 * (static_cast<int>(bundle.cameras.size()) - 1) : 0);
-  size = warp_at + (warp ? 2 : 0);
+  corners_at = warp_at + (warp ? 2 : 0);
+  size = corners_at + (corners ? 3 * static_cast<int>(bundle.warp.offsets_m.size()) : 0);
 }
 
 BundleEquations bundle_equations(const BoardBundle& bundle, const BoardShape& shape, std::span<const BundleView> views,
@@ -178,8 +200,9 @@ BundleEquations bundle_equations(const BoardBundle& bundle, const BoardShape& sh
   e.H_frame_shared.assign(frames, Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(6, layout.size));
   for (const BundleView& view : views) {
     const ViewColumns columns = columns_of(layout, view.camera);
-    add_view(linearise(bundle, shape, view, columns, layout.free_of(view.camera)), columns,
-             static_cast<std::size_t>(view.frame), e);
+    const ViewLinearisation linear = linearise(bundle, shape, view, columns, layout.free_of(view.camera));
+    add_view(linear, columns, static_cast<std::size_t>(view.frame), e);
+    if (layout.corners) add_corners(linear, columns, layout, view, e);
   }
   for (const BundlePrior& prior : bundle_priors(bundle, shape, freedom)) {
     e.H(prior.place, prior.place) += prior.information;

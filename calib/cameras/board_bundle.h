@@ -14,10 +14,13 @@
 
 namespace alidade {
 
-/// How a board bulges towards z: z = x (1 - u²) + y (1 - v²), where u and v run from -1 to 1 across its corners.
-/// Source: mrcal, "calobject warp".
+/// How a board differs from the flat and regular one that it should be: it bulges towards z by
+/// x (1 - u²) + y (1 - v²), where u and v run from -1 to 1 across its corners (source: mrcal, "calobject warp"), and
+/// every corner may lie off by itself (source: Strobl and Hirzinger 2011, "more accurate pinhole camera calibration
+/// with imperfect planar target").
 struct BoardWarp {
   double x_m = 0, y_m = 0;
+  std::vector<Eigen::Vector3d> offsets_m{};  ///< of every corner; empty: none
 };
 
 /// The corners of a bulging board in its frame, m, and what a bulge of 1 moves each of them in z.
@@ -28,7 +31,9 @@ struct BoardShape {
 
   Eigen::Vector3d corner(int id, const BoardWarp& warp) const {
     const auto i = static_cast<std::size_t>(id);
-    return corners_m[i] + Eigen::Vector3d(0, 0, bulge[i].x() * warp.x_m + bulge[i].y() * warp.y_m);
+    const Eigen::Vector3d bulging =
+        corners_m[i] + Eigen::Vector3d(0, 0, bulge[i].x() * warp.x_m + bulge[i].y() * warp.y_m);
+    return warp.offsets_m.empty() ? bulging : Eigen::Vector3d(bulging + warp.offsets_m[i]);
   }
 };
 
@@ -60,8 +65,9 @@ struct BundleFreedom {
   std::vector<std::vector<int>> intrinsics;
   bool camera_poses = true;  ///< of all cameras but the first
   bool warp = true;
-  double warp_sigma_share =
-      0.005;  ///< a board is flat to this share of its diagonal: what holds the warp if nothing else
+  bool corners = false;               ///< every corner's place, beside the bulge
+  double warp_sigma_share = 0.005;    ///< boards are flat to this share of their diagonal: holds what nothing else does
+  double corner_sigma_share = 0.002;  ///< along the board corners lie where they should to this share of it
 };
 
 /// Where the parameters that all moments share stand in their vector.
@@ -76,8 +82,9 @@ struct BundleLayout {
   std::vector<int> starts;                   ///< of their places
   int pose_start = 0;
   int warp_at = 0;
+  int corners_at = 0;  ///< three of each corner
   int size = 0;
-  bool camera_poses = false, warp = false;
+  bool camera_poses = false, warp = false, corners = false;
 };
 
 /// The normal equations of all views about a bundle, weighted by 1/sigma_px² and the corners' weights: H x = -g for the

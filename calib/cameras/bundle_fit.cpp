@@ -83,6 +83,14 @@ BundleFit fit_bundle(const BoardBundle& start, const BoardShape& shape, std::vec
   return fit;
 }
 
+BundleFit fit_corners(const BundleFit& fit, const BoardShape& shape, BundleFreedom& freedom,
+                      const BundleFitOptions& options) {
+  freedom.corners = true;
+  BoardBundle start = fit.bundle;
+  start.warp.offsets_m.assign(shape.corners_m.size(), Eigen::Vector3d::Zero());
+  return fit_bundle(start, shape, fit.views, freedom, options);
+}
+
 double rms_px(const BoardBundle& bundle, const BoardShape& shape, std::span<const BundleView> views, bool all) {
   double sum = 0;
   int count = 0;

@@ -29,6 +29,11 @@ struct BundleFit {
 BundleFit fit_bundle(const BoardBundle& start, const BoardShape& shape, std::vector<BundleView> views,
                      const BundleFreedom& freedom, const BundleFitOptions& options = {});
 
+/// A fit whose corners of the board are found too, from one that took the board as bulging at most; `freedom` is that
+/// of the given fit, its corners are set free.
+BundleFit fit_corners(const BundleFit& fit, const BoardShape& shape, BundleFreedom& freedom,
+                      const BundleFitOptions& options = {});
+
 /// Root mean square length of the residuals of the corners with weight (all: also of those without), px; 0 for none.
 double rms_px(const BoardBundle& bundle, const BoardShape& shape, std::span<const BundleView> views, bool all = false);
 

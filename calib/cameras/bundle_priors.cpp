@@ -37,6 +37,13 @@ std::vector<BundlePrior> bundle_priors(const BoardBundle& bundle, const BoardSha
     priors.push_back({layout.warp_at, bundle.warp.x_m, 1.0 / (sigma * sigma)});
     priors.push_back({layout.warp_at + 1, bundle.warp.y_m, 1.0 / (sigma * sigma)});
   }
+  for (std::size_t i = 0; layout.corners && i < bundle.warp.offsets_m.size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double sigma = (axis == 2 ? freedom.warp_sigma_share : freedom.corner_sigma_share) * shape.extent_m;
+      priors.push_back(
+          {layout.corners_at + 3 * static_cast<int>(i) + axis, bundle.warp.offsets_m[i][axis], 1.0 / (sigma * sigma)});
+    }
+  }
   return priors;
 }
 

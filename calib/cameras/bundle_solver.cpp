@@ -72,6 +72,9 @@ BoardBundle moved(BoardBundle bundle, const BundleLayout& layout, const BundleSt
     bundle.warp.x_m += step.shared[layout.warp_at];
     bundle.warp.y_m += step.shared[layout.warp_at + 1];
   }
+  for (std::size_t i = 0; layout.corners && i < bundle.warp.offsets_m.size(); ++i) {
+    bundle.warp.offsets_m[i] += step.shared.segment<3>(layout.corners_at + 3 * static_cast<Eigen::Index>(i));
+  }
   for (std::size_t f = 0; f < bundle.T_rig_board.size(); ++f) {
     bundle.T_rig_board[f] = bundle.T_rig_board[f] * perturbation(step.frames[f]);
   }
