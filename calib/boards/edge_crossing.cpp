@@ -93,7 +93,7 @@ class CrossingProblem {
 
   bool operator()(const double* x, double* residuals, double* jacobian) const {
     const Eigen::Map<const Unknowns> m(x);
-    Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, kUnknowns>> J(jacobian, NumResiduals(), jacobian ? kUnknowns : 0);
+    Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, kUnknowns>> J(jacobian, jacobian ? NumResiduals() : 0, kUnknowns);
     const Edge edge1(x[kAngle1], x[kLogBlur1]), edge2(x[kAngle2], x[kLogBlur2]);
     for (int i = 0; i < pixels(); ++i) {
       const Vector2d& p = samples_[i].offset;
