@@ -7,6 +7,7 @@
 
 #include <Eigen/SVD>
 #include <gtest/gtest.h>
+#include <opencv2/core.hpp>
 
 namespace alidade {
 namespace {
@@ -57,6 +58,23 @@ TEST(UndistortedCamera, ShowsMoreWithMoreAlpha) {
     const double field = 1.0 / (pinhole->fx * pinhole->fy);
     EXPECT_GT(field, last);
     last = field;
+  }
+}
+
+TEST(UndistortedCamera, IsOpenCvs) {
+  // cv2.getOptimalNewCameraMatrix(K, k, (159, 119), alpha, (160, 120)) of OpenCV 4.6, which looks for the last pixels'
+  // centres at the width and height that it is given.
+  const Camera camera{160, 120, 100, 101, 80, 58, BrownConrady{-0.1, 0.02, 0.001, -0.002}};
+  const double expected[][5] = {{0, 93.857368, 97.526054, 79.578018, 58.015356},
+                                {0.5, 92.398041, 94.516468, 79.509172, 58.077830},
+                                {1, 90.938713, 91.506882, 79.440326, 58.140303}};
+  for (const auto& [alpha, fx, fy, cx, cy] : expected) {
+    const auto pinhole = undistorted_camera(camera, {.alpha = alpha});
+    ASSERT_TRUE(pinhole);
+    EXPECT_NEAR(pinhole->fx, fx, 0.01);  // it looks at 9 pixels a side, we at 65
+    EXPECT_NEAR(pinhole->fy, fy, 0.01);
+    EXPECT_NEAR(pinhole->cx, cx, 0.01);
+    EXPECT_NEAR(pinhole->cy, cy, 0.01);
   }
 }
 
