@@ -73,7 +73,7 @@ bool is_all_seen(const Camera& camera, const Rectangle& r) {
 }
 
 // The largest rectangle about `centre`, of the shape of the one that the sides leave inside, that the lens sees whole:
-// lenses that bend one way and then the other may not see the corners of the latter.
+// where the corners of the image have no rays, the corners of the latter may lie beyond all that it sees.
 Rectangle find_inner(const Camera& camera, const Eigen::Vector2d& centre) {
   Rectangle inside{Eigen::Vector2d::Constant(-kWidest), Eigen::Vector2d::Constant(kWidest)};
   for (const auto& ray : side_rays(camera, Side::Left)) inside.least.x() = std::max(inside.least.x(), ray.x());

@@ -15,6 +15,7 @@ namespace {
 const Camera kBarrel{160, 120, 100, 101, 80, 58, BrownConrady{-0.3, 0.1, 0.001, -0.002}};
 const Camera kPincushion{160, 120, 100, 101, 80, 58, BrownConrady{0.3, 0.05}};
 const Camera kMoustache{160, 120, 100, 101, 80, 58, BrownConrady{-0.25, 0.35}};
+const Camera kFolding{160, 120, 100, 101, 80, 58, BrownConrady{-0.22}};  // its corners have no rays
 const Camera kRational{160, 120, 100, 101, 80, 58, BrownConrady{0.3, 0.05, 0, 0, 0.001, 0.5, -0.01, 0.002}};
 const Camera kFisheye{160, 120, 75, 75, 79.5, 59.5, Fisheye{-0.01, 0.002}};
 const Camera kWideFisheye{160, 120, 45, 45, 79.5, 59.5, Fisheye{}};  // 100° off axis at the sides
@@ -24,7 +25,7 @@ int count_unseen(const Camera& camera, const Camera& pinhole) {
 }
 
 TEST(UndistortedCamera, OfAlphaZeroShowsNothingThatTheLensDidNotSee) {
-  for (const Camera& camera : {kBarrel, kPincushion, kMoustache, kRational, kFisheye, kWideFisheye}) {
+  for (const Camera& camera : {kBarrel, kPincushion, kMoustache, kFolding, kRational, kFisheye, kWideFisheye}) {
     const auto pinhole = undistorted_camera(camera);
     ASSERT_TRUE(pinhole);
     EXPECT_FALSE(find_fault(*pinhole));
@@ -80,6 +81,7 @@ TEST(UndistortedCamera, IsOpenCvs) {
 
 TEST(UndistortedCamera, IsEmptyWhereTheLensSeesTooWideForAll) {
   EXPECT_FALSE(undistorted_camera(kWideFisheye, {.alpha = 1}));
+  EXPECT_FALSE(undistorted_camera(kFolding, {.alpha = 1}));
   EXPECT_TRUE(undistorted_camera(kWideFisheye, {.alpha = 1, .focal_px = 30}));
 }
 
