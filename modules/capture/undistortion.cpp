@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
@@ -72,7 +73,7 @@ bool is_all_seen(const Camera& camera, const Rectangle& r) {
 }
 
 // The largest rectangle about `centre`, of the shape of the one that the sides leave inside, that the lens sees whole:
-// lenses that bend one way and then the other may not see the corners of the latter.
+// where the corners of the image have no rays, the corners of the latter may lie beyond all that it sees.
 Rectangle find_inner(const Camera& camera, const Eigen::Vector2d& centre) {
   Rectangle inside{Eigen::Vector2d::Constant(-kWidest), Eigen::Vector2d::Constant(kWidest)};
   for (const auto& ray : side_rays(camera, Side::Left)) inside.least.x() = std::max(inside.least.x(), ray.x());
@@ -106,6 +107,17 @@ std::optional<Rectangle> find_outer(const Camera& camera) {
   return outer;
 }
 
+// The camera whose outermost pixels lie on the sides of the rectangle.
+Camera that_shows(const Rectangle& rectangle, Camera pinhole) {
+  const Eigen::Vector2d last(pinhole.width - 1, pinhole.height - 1);
+  const Eigen::Vector2d f = last.cwiseQuotient(rectangle.most - rectangle.least);
+  pinhole.fx = f.x();
+  pinhole.fy = f.y();
+  pinhole.cx = -f.x() * rectangle.least.x();
+  pinhole.cy = -f.y() * rectangle.least.y();
+  return pinhole;
+}
+
 Camera pinhole_of(const Camera& camera) {
   Camera pinhole = camera;
   pinhole.distortion = BrownConrady{};
@@ -137,19 +149,12 @@ std::optional<Camera> undistorted_camera(const Camera& camera, const Undistortio
   if (is_pinhole(camera.distortion)) return pinhole;
   const auto centre = undistort(camera, last / 2);
   if (!centre) return std::nullopt;
-  Rectangle shown = find_inner(camera, *centre);
-  if (options.alpha > 0) {
-    const auto outer = find_outer(camera);
-    if (!outer) return std::nullopt;
-    shown.least += options.alpha * (outer->least - shown.least);
-    shown.most += options.alpha * (outer->most - shown.most);
-  }
-  const Eigen::Vector2d f = last.cwiseQuotient(shown.most - shown.least);
-  pinhole.fx = f.x();
-  pinhole.fy = f.y();
-  pinhole.cx = -f.x() * shown.least.x();
-  pinhole.cy = -f.y() * shown.least.y();
-  return pinhole;
+  const Intrinsics inner = intrinsics(that_shows(find_inner(camera, *centre), pinhole));
+  if (options.alpha == 0) return with_intrinsics(pinhole, inner);
+  const auto rectangle = find_outer(camera);
+  if (!rectangle) return std::nullopt;
+  const Intrinsics outer = intrinsics(that_shows(*rectangle, pinhole));
+  return with_intrinsics(pinhole, (1 - options.alpha) * inner + options.alpha * outer);
 }
 
 UndistortionMap undistortion_map(const Camera& camera, const Camera& pinhole) {

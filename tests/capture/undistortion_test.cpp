@@ -7,6 +7,7 @@
 
 #include <Eigen/SVD>
 #include <gtest/gtest.h>
+#include <opencv2/core.hpp>
 
 namespace alidade {
 namespace {
@@ -14,6 +15,7 @@ namespace {
 const Camera kBarrel{160, 120, 100, 101, 80, 58, BrownConrady{-0.3, 0.1, 0.001, -0.002}};
 const Camera kPincushion{160, 120, 100, 101, 80, 58, BrownConrady{0.3, 0.05}};
 const Camera kMoustache{160, 120, 100, 101, 80, 58, BrownConrady{-0.25, 0.35}};
+const Camera kFolding{160, 120, 100, 101, 80, 58, BrownConrady{-0.22}};  // its corners have no rays
 const Camera kRational{160, 120, 100, 101, 80, 58, BrownConrady{0.3, 0.05, 0, 0, 0.001, 0.5, -0.01, 0.002}};
 const Camera kFisheye{160, 120, 75, 75, 79.5, 59.5, Fisheye{-0.01, 0.002}};
 const Camera kWideFisheye{160, 120, 45, 45, 79.5, 59.5, Fisheye{}};  // 100° off axis at the sides
@@ -23,7 +25,7 @@ int count_unseen(const Camera& camera, const Camera& pinhole) {
 }
 
 TEST(UndistortedCamera, OfAlphaZeroShowsNothingThatTheLensDidNotSee) {
-  for (const Camera& camera : {kBarrel, kPincushion, kMoustache, kRational, kFisheye, kWideFisheye}) {
+  for (const Camera& camera : {kBarrel, kPincushion, kMoustache, kFolding, kRational, kFisheye, kWideFisheye}) {
     const auto pinhole = undistorted_camera(camera);
     ASSERT_TRUE(pinhole);
     EXPECT_FALSE(find_fault(*pinhole));
@@ -60,8 +62,26 @@ TEST(UndistortedCamera, ShowsMoreWithMoreAlpha) {
   }
 }
 
+TEST(UndistortedCamera, IsOpenCvs) {
+  // cv2.getOptimalNewCameraMatrix(K, k, (159, 119), alpha, (160, 120)) of OpenCV 4.6, which looks for the last pixels'
+  // centres at the width and height that it is given.
+  const Camera camera{160, 120, 100, 101, 80, 58, BrownConrady{-0.1, 0.02, 0.001, -0.002}};
+  const double expected[][5] = {{0, 93.857368, 97.526054, 79.578018, 58.015356},
+                                {0.5, 92.398041, 94.516468, 79.509172, 58.077830},
+                                {1, 90.938713, 91.506882, 79.440326, 58.140303}};
+  for (const auto& [alpha, fx, fy, cx, cy] : expected) {
+    const auto pinhole = undistorted_camera(camera, {.alpha = alpha});
+    ASSERT_TRUE(pinhole);
+    EXPECT_NEAR(pinhole->fx, fx, 0.01);  // it looks at 9 pixels a side, we at 65
+    EXPECT_NEAR(pinhole->fy, fy, 0.01);
+    EXPECT_NEAR(pinhole->cx, cx, 0.01);
+    EXPECT_NEAR(pinhole->cy, cy, 0.01);
+  }
+}
+
 TEST(UndistortedCamera, IsEmptyWhereTheLensSeesTooWideForAll) {
   EXPECT_FALSE(undistorted_camera(kWideFisheye, {.alpha = 1}));
+  EXPECT_FALSE(undistorted_camera(kFolding, {.alpha = 1}));
   EXPECT_TRUE(undistorted_camera(kWideFisheye, {.alpha = 1, .focal_px = 30}));
 }
 

@@ -63,6 +63,20 @@ class Undistort(ProgramTest):
         self.assertTrue((self.directory / "stills" / "images" / "000003.png").is_file())
         self.assertEqual(self.undistort(source="out/video.mp4", out="again")["frames"], 4)
 
+    def test_ctrl_c_keeps_what_there_is(self):
+        many = self.directory / "many"
+        many.mkdir()
+        for i in range(4000):  # far more than are undistorted before the signal comes
+            (many / f"{i:06}.png").symlink_to(self.directory / "scene" / "images" / f"{i % 4:06}.png")
+        code, printed = self.interrupt(["undistort", "many", "--camera", "camera.yaml", "-o", "out"],
+                                       once_seen="undistorting")
+        self.assertEqual(code, 130, printed)
+        summary = self.summary("out")
+        self.assertTrue(summary["interrupted"])
+        written = list((self.directory / "out" / "images").iterdir())
+        self.assertEqual(len(written), summary["frames"])
+        self.assertLess(len(written), 4000)
+
     def test_a_fisheye_too_wide_is_told_what_to_do(self):
         text = CAMERA.format(model="fisheye", width=160, k1=0).replace("fx: 100, fy: 100", "fx: 45, fy: 45")
         self.write("camera.yaml", text)
