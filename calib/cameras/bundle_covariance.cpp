@@ -72,6 +72,7 @@ std::optional<Eigen::MatrixXd> inverse(const Eigen::MatrixXd& S) {
   return scale.asDiagonal() * solved * scale.asDiagonal();
 }
 
+// `parameters`: those of all frames that a view shows and the shared ones.
 double residual_sigma(const BundleFit& fit, const BoardShape& shape, int parameters) {
   double sum = 0;
   int count = 0;
@@ -83,8 +84,7 @@ double residual_sigma(const BundleFit& fit, const BoardShape& shape, int paramet
       count += 2;
     }
   }
-  const int free = count - parameters - 6 * static_cast<int>(fit.bundle.T_rig_board.size());
-  return std::sqrt(sum / std::max(1, free));
+  return std::sqrt(sum / std::max(1, count - parameters));
 }
 
 // The jackknife's variance of pixels, frame by frame left out, in units of the variance that independent errors have:
@@ -103,7 +103,7 @@ double variance_ratio(const BundleFit& fit, const BundleFreedom& freedom, const 
   }
   spread *= (static_cast<double>(frames) - 1.0) / static_cast<double>(frames);
   std::vector<double> ratios;
-  for (const Eigen::MatrixXd& J : pixel_jacobians(fit.bundle, freedom)) {
+  for (const Eigen::MatrixXd& J : pixel_jacobians(fit, freedom)) {
     const Eigen::MatrixXd J_shared = J.leftCols(C.cols()) - J.rightCols<6>() * reduced.B;
     const double independent = sigma * sigma * (J_shared * C * J_shared.transpose()).trace();
     if (independent > 0) ratios.push_back((J_shared * spread * J_shared.transpose()).trace() / independent);
@@ -123,7 +123,7 @@ std::optional<BundleCovariance> bundle_covariance(const BundleFit& fit, const Bo
   if (!C || !C->allFinite()) return std::nullopt;
   const Eigen::Index n = C->rows();
   BundleCovariance covariance;
-  covariance.sigma = residual_sigma(fit, shape, static_cast<int>(n));
+  covariance.sigma = residual_sigma(fit, shape, static_cast<int>(n) + 6 * static_cast<int>(reduced.S_frame.size()));
   // With a dozen frames the jackknife itself scatters by a third: only what is plainly more counts.
   const double ratio = variance_ratio(fit, freedom, reduced, *C, covariance.sigma);
   if (ratio > 2.0) covariance.within_views = ratio;

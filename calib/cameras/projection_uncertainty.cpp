@@ -12,13 +12,25 @@
 namespace alidade {
 namespace {
 
-double median_origin_distance(const BoardBundle& bundle) {
-  std::vector<double> distances;
-  for (const Eigen::Isometry3d& T : bundle.T_rig_board) distances.push_back(T.translation().norm());
-  if (distances.empty()) return 1;
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
+double median_or_1(std::vector<double> values) {
+  if (values.empty()) return 1;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+bool counts(const BundleView& view) {
+  return std::any_of(view.weights.begin(), view.weights.end(), [](double weight) { return weight > 0; });
+}
+
+// From the rig's origin; frames that no view shows stand anywhere.
+double median_board_distance_m(const BundleFit& fit) {
+  std::vector<double> distances;
+  for (const BundleView& view : fit.views) {
+    if (!counts(view)) continue;
+    distances.push_back(fit.bundle.T_rig_board[static_cast<std::size_t>(view.frame)].translation().norm());
+  }
+  return median_or_1(std::move(distances));
 }
 
 double larger_sigma(const Eigen::Matrix2d& covariance) {
@@ -52,16 +64,16 @@ std::optional<Eigen::MatrixXd> pixel_jacobian(const BoardBundle& bundle, const B
   return J;
 }
 
-std::vector<Eigen::MatrixXd> pixel_jacobians(const BoardBundle& bundle, const BundleFreedom& freedom) {
+std::vector<Eigen::MatrixXd> pixel_jacobians(const BundleFit& fit, const BundleFreedom& freedom) {
   constexpr int kPlaces = 5;
-  const double distance_m = median_origin_distance(bundle);
+  const double distance_m = median_board_distance_m(fit);
   std::vector<Eigen::MatrixXd> all;
-  for (std::size_t c = 0; c < bundle.cameras.size(); ++c) {
-    const Camera& camera = bundle.cameras[c].camera;
+  for (std::size_t c = 0; c < fit.bundle.cameras.size(); ++c) {
+    const Camera& camera = fit.bundle.cameras[c].camera;
     for (int row = 0; row < kPlaces; ++row) {
       for (int column = 0; column < kPlaces; ++column) {
         const Eigen::Vector2d pixel((column + 0.5) * camera.width / kPlaces, (row + 0.5) * camera.height / kPlaces);
-        auto J = pixel_jacobian(bundle, freedom, static_cast<int>(c), pixel, distance_m);
+        auto J = pixel_jacobian(fit.bundle, freedom, static_cast<int>(c), pixel, distance_m);
         if (J) all.push_back(std::move(*J));
       }
     }
@@ -77,14 +89,16 @@ std::optional<Eigen::Matrix2d> pixel_covariance(const BundleCovariance& covarian
   return *J * covariance.shared_and_motion * J->transpose();
 }
 
-double median_distance_m(const BoardBundle& bundle, const BoardShape& shape, int index) {
+double median_distance_m(const BundleFit& fit, const BoardShape& shape, int index) {
   const Eigen::Vector3d centre = 0.5 * (shape.corners_m.front() + shape.corners_m.back());
-  BoardBundle seen;
-  for (const Eigen::Isometry3d& T : bundle.T_rig_board) {
-    const auto& camera = bundle.cameras[static_cast<std::size_t>(index)];
-    seen.T_rig_board.emplace_back(Eigen::Translation3d(camera.T_rig_camera.inverse() * (T * centre)));
+  const Eigen::Isometry3d T_camera_rig = fit.bundle.cameras[static_cast<std::size_t>(index)].T_rig_camera.inverse();
+  std::vector<double> distances;
+  for (const BundleView& view : fit.views) {
+    if (view.camera != index || !counts(view)) continue;
+    distances.push_back(
+        (T_camera_rig * (fit.bundle.T_rig_board[static_cast<std::size_t>(view.frame)] * centre)).norm());
   }
-  return median_origin_distance(seen);
+  return median_or_1(std::move(distances));
 }
 
 UncertaintyMap uncertainty_map(const BundleCovariance& covariance, const BoardBundle& bundle,

@@ -14,7 +14,7 @@ std::optional<Eigen::MatrixXd> pixel_jacobian(const BoardBundle& bundle, const B
                                               const Eigen::Vector2d& pixel, double distance_m);
 
 /// The same at 5 x 5 places over every camera's image, at the boards' median distance; without those that are empty.
-std::vector<Eigen::MatrixXd> pixel_jacobians(const BoardBundle& bundle, const BundleFreedom& freedom);
+std::vector<Eigen::MatrixXd> pixel_jacobians(const BundleFit& fit, const BundleFreedom& freedom);
 
 /// Covariance (px²) of the pixel at which a point is imaged that truly lies `distance_m` away in the direction of
 /// `pixel`: how far the calibration's errors move it. Empty as pixel_jacobian.
@@ -22,8 +22,8 @@ std::optional<Eigen::Matrix2d> pixel_covariance(const BundleCovariance& covarian
                                                 const BundleFreedom& freedom, int index, const Eigen::Vector2d& pixel,
                                                 double distance_m);
 
-/// The median distance of the boards' centres from a camera, m.
-double median_distance_m(const BoardBundle& bundle, const BoardShape& shape, int index);
+/// The median distance from a camera, m, of the centres of the boards in its views (those with weight); 1 without any.
+double median_distance_m(const BundleFit& fit, const BoardShape& shape, int index);
 
 /// Standard deviations of a pixel's place over the image (the larger axis of its covariance), row by row.
 struct UncertaintyMap {
