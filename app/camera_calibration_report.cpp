@@ -57,10 +57,10 @@ ReportSection views_section(const CameraCalibrationRun& run, const ResultDirecto
 }
 
 ReportSection lenses_section(const CameraCalibrationRun& run) {
-  ReportTable trials{"", {"lens", "RMS of its own images (px)", "RMS of images left out (px)"}, {}};
+  ReportTable trials{"", {"lens", "board's corners", "RMS of its own images (px)", "RMS of images left out (px)"}, {}};
   for (const LensTrial& trial : run.result.trials) {
-    trials.rows.push_back({std::string(name_of(trial.lens)), fmt::format("{:.4f}", trial.training_rms_px),
-                           fmt::format("{:.4f}", trial.held_out_rms_px)});
+    trials.rows.push_back({std::string(name_of(trial.model.lens)), trial.model.free_corners ? "found" : "as printed",
+                           fmt::format("{:.4f}", trial.training_rms_px), fmt::format("{:.4f}", trial.held_out_rms_px)});
   }
   ReportTable parameters{"", {"parameter", "value", "standard deviation"}, {}};
   const CameraCalibration& c = run.result;
@@ -97,7 +97,7 @@ ReportSection camera_section(const FittedCamera& of, const Board& board, const s
                              const ResultDirectory& directory) {
   const BoardShape shape = shape_of(board);
   const Camera& camera = of.fit.bundle.cameras[static_cast<std::size_t>(of.camera)].camera;
-  const double distance_m = median_distance_m(of.fit.bundle, shape, of.camera);
+  const double distance_m = median_distance_m(of.fit, shape, of.camera);
   const UncertaintyMap map = uncertainty_map(of.covariance, of.fit.bundle, of.freedom, of.camera, distance_m);
   const std::vector<std::pair<std::string, cv::Mat>> pictures{
       {"coverage", draw_coverage(of.fit, of.camera)},

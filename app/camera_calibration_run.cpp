@@ -59,7 +59,9 @@ std::vector<ReportRow> error_rows(const CameraCalibrationRun& run) {
 std::vector<ReportRow> camera_rows(const CameraCalibrationRun& run) {
   const CameraCalibration& c = run.result;
   const Eigen::VectorXd sigma = intrinsics_sigma(c.covariance, BundleLayout(c.fit.bundle, c.freedom), 0);
-  std::vector<ReportRow> rows{{"lens", std::string(name_of(c.lens)), ""}};
+  std::vector<ReportRow> rows{
+      {"lens", std::string(name_of(c.model.lens)), "", Verdict::None,
+       c.model.free_corners ? "with the true places of the board's corners, which lowers the error left out" : ""}};
   const auto names = intrinsics_names(c.camera);
   const Intrinsics values = intrinsics(c.camera);
   const std::vector<int> free = c.freedom.intrinsics.front();
@@ -90,7 +92,7 @@ std::array<UncertainPlace, 3> uncertain_places(const BundleCovariance& covarianc
   std::array<UncertainPlace, 3> places{{{"centre", {0.5 * (c.width - 1), 0.5 * (c.height - 1)}, {}, {}},
                                         {"edge", {right, 0.5 * (c.height - 1)}, {}, {}},
                                         {"corner", {right, bottom}, {}, {}}}};
-  const double distance_m = median_distance_m(fit.bundle, shape, camera);
+  const double distance_m = median_distance_m(fit, shape, camera);
   for (UncertainPlace& place : places) {
     const auto at = [&](double d) {
       return sigma_px(pixel_covariance(covariance, fit.bundle, freedom, camera, place.pixel, d));
@@ -132,7 +134,7 @@ void add_warnings(CameraCalibrationRun& run) {
     warnings.push_back(
         fmt::format("the lens '{}' does not fit: {:.3f} px of systematic error remain beside {:.3f} px "
                     "of noise",
-                    name_of(c.lens), c.residuals.systematic_px, c.residuals.noise_px));
+                    name_of(c.model.lens), c.residuals.systematic_px, c.residuals.noise_px));
   }
   if (c.covariance.within_views > 1) {
     warnings.push_back(
@@ -185,7 +187,8 @@ nlohmann::json summary_of(const CameraCalibrationRun& run) {
                          {"board_guessed", run.board.is_guessed},
                          {"images", run.images.images.size()},
                          {"images_with_board", run.images.seen},
-                         {"lens", name_of(c.lens)},
+                         {"lens", name_of(c.model.lens)},
+                         {"free_corners", c.model.free_corners},
                          {"rms_px", c.rms_px},
                          {"rms_all_px", c.rms_all_px},
                          {"lens_fits", lens_fits(c.residuals)},
@@ -207,8 +210,10 @@ nlohmann::json summary_of(const CameraCalibrationRun& run) {
     summary["intrinsics"][name] = {{"value", values[place]}, {"sigma", sigma[i]}};
   }
   for (const LensTrial& trial : c.trials) {
-    summary["lenses"].push_back(
-        {{"lens", name_of(trial.lens)}, {"rms_px", trial.training_rms_px}, {"held_out_rms_px", trial.held_out_rms_px}});
+    summary["lenses"].push_back({{"lens", name_of(trial.model.lens)},
+                                 {"free_corners", trial.model.free_corners},
+                                 {"rms_px", trial.training_rms_px},
+                                 {"held_out_rms_px", trial.held_out_rms_px}});
   }
   for (const UncertainPlace& place : places_of(run)) {
     if (place.near_px) summary["pixel_sigma_px"][place.name] = {{"near", *place.near_px}, {"far", *place.far_px}};

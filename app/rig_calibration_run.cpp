@@ -51,7 +51,7 @@ nlohmann::json camera_summary(const RigCalibrationRun& run, std::size_t c) {
                          {"source", run.images[c].source},
                          {"images", run.images[c].images.size()},
                          {"images_with_board", run.images[c].seen},
-                         {"lens", name_of(alone.lens)},
+                         {"lens", name_of(alone.model.lens)},
                          {"rms_px", rig.camera_rms_px[c]},
                          {"alone_rms_px", alone.rms_px},
                          {"lens_fits", lens_fits(rig.residuals[c])}};
@@ -108,10 +108,10 @@ void add_warnings(RigCalibrationRun& run) {
       run.warnings.push_back(views[i].name + ": " + describe(alone.verdicts[i], views[i], views));
     }
     if (!lens_fits(rig.residuals[c])) {
-      run.warnings.push_back(
-          fmt::format("camera '{}': its lens '{}' does not fit: {:.3f} px of systematic error "
-                      "remain beside {:.3f} px of noise",
-                      run.names[c], name_of(alone.lens), rig.residuals[c].systematic_px, rig.residuals[c].noise_px));
+      run.warnings.push_back(fmt::format(
+          "camera '{}': its lens '{}' does not fit: {:.3f} px of systematic error "
+          "remain beside {:.3f} px of noise",
+          run.names[c], name_of(alone.model.lens), rig.residuals[c].systematic_px, rig.residuals[c].noise_px));
     }
     if (rig.camera_rms_px[c] > 2.0 * alone.rms_px + 0.05) {
       run.warnings.push_back(
@@ -139,7 +139,7 @@ std::vector<ReportRow> figure_rows(const RigCalibrationRun& run) {
     const bool is_good = lens_fits(rig.residuals[c]) && rig.camera_rms_px[c] <= 2.0 * rig.alone[c].rms_px + 0.05;
     rows.push_back({run.names[c] + ", RMS", fmt::format("{:.3f}", rig.camera_rms_px[c]), "px",
                     is_good ? Verdict::Good : Verdict::Poor,
-                    fmt::format("lens {}; alone {:.3f}", name_of(rig.alone[c].lens), rig.alone[c].rms_px)});
+                    fmt::format("lens {}; alone {:.3f}", name_of(rig.alone[c].model.lens), rig.alone[c].rms_px)});
   }
   for (const PairError& pair : rig.pairs) {
     rows.push_back({pair_name(run, pair) + ", epipolar error, RMS", fmt::format("{:.3f}", pair.epipolar_rms_px), "px",

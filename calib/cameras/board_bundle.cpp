@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <Eigen/QR>
+
 #include "calib/cameras/bundle_priors.h"
 #include "geometry/rotation.h"
 
@@ -161,12 +163,28 @@ void add_corners(const ViewLinearisation& linear, const ViewColumns& columns, co
 
 }  // namespace
 
+namespace {
+
+Eigen::Matrix<double, Eigen::Dynamic, 7> rigid_modes(const std::vector<Eigen::Vector3d>& corners,
+                                                     const Eigen::Vector3d& centre) {
+  Eigen::Matrix<double, Eigen::Dynamic, 7> modes(3 * static_cast<Eigen::Index>(corners.size()), 7);
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Eigen::Vector3d p = corners[i] - centre;
+    modes.middleRows<3>(3 * static_cast<Eigen::Index>(i)) << Eigen::Matrix3d::Identity(), -skew(p), p;
+  }
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(modes);
+  return qr.householderQ() * Eigen::MatrixXd::Identity(modes.rows(), 7);
+}
+
+}  // namespace
+
 BoardShape shape_of(const Board& board) {
   BoardShape shape;
   shape.corners_m = corners_m(board);
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& corner : shape.corners_m) box.extend(corner);
   shape.extent_m = box.diagonal().norm();
+  shape.rigid_modes = rigid_modes(shape.corners_m, box.center());
   for (const Eigen::Vector3d& corner : shape.corners_m) {
     const Eigen::Vector2d uv = 2.0 * (corner - box.center()).head<2>().cwiseQuotient(box.sizes().head<2>());
     shape.bulge.push_back(Eigen::Vector2d::Ones() - uv.cwiseAbs2());
@@ -209,6 +227,14 @@ BundleEquations bundle_equations(const BoardBundle& bundle, const BoardShape& sh
     e.g[prior.place] += prior.information * prior.value;
     e.cost += prior.information * prior.value * prior.value;
   }
+  if (layout.corners) {
+    const Eigen::Index at = layout.corners_at, size = layout.size - layout.corners_at;
+    const Eigen::VectorXd moved = rigid_part(bundle, shape);
+    const double information = rigid_information(shape);
+    e.H.block(at, at, size, size) += information * shape.rigid_modes * shape.rigid_modes.transpose();
+    e.g.tail(size) += information * shape.rigid_modes * moved;
+    e.cost += information * moved.squaredNorm();
+  }
   return e;
 }
 
@@ -238,6 +264,7 @@ double bundle_cost(const BoardBundle& bundle, const BoardShape& shape, std::span
   for (const BundlePrior& prior : bundle_priors(bundle, shape, freedom)) {
     cost += prior.information * prior.value * prior.value;
   }
+  if (freedom.corners) cost += rigid_information(shape) * rigid_part(bundle, shape).squaredNorm();
   return cost;
 }
 

@@ -28,6 +28,8 @@ struct BoardShape {
   std::vector<Eigen::Vector3d> corners_m;
   std::vector<Eigen::Vector2d> bulge;  ///< (1 - u², 1 - v²)
   double extent_m = 0;                 ///< the diagonal
+  /// What offsets of the corners together may not do, as orthonormal columns: move, turn or scale the whole board.
+  Eigen::Matrix<double, Eigen::Dynamic, 7> rigid_modes{};
 
   Eigen::Vector3d corner(int id, const BoardWarp& warp) const {
     const auto i = static_cast<std::size_t>(id);

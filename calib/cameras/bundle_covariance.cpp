@@ -35,11 +35,10 @@ struct ReducedEquations {
 ReducedEquations reduce(const BundleFit& fit, const BoardShape& shape, const BundleFreedom& freedom) {
   const BundleLayout layout(fit.bundle, freedom);
   const std::size_t frames = fit.bundle.T_rig_board.size();
-  ReducedEquations reduced{
-      bundle_equations(fit.bundle, shape, {}, freedom).H, {}, {}, Rows6::Zero(6, layout.size), Matrix6d::Zero()};
+  const BundleEquations priors = bundle_equations(fit.bundle, shape, {}, freedom);
+  ReducedEquations reduced{priors.H, {}, {}, Rows6::Zero(6, layout.size), Matrix6d::Zero()};
   std::vector<std::vector<BundleView>> by_frame(frames);
   for (const BundleView& view : fit.views) by_frame[static_cast<std::size_t>(view.frame)].push_back(view);
-  const Eigen::MatrixXd priors = reduced.S;
   int seen = 0;
   for (std::size_t f = 0; f < frames; ++f) {
     const BundleEquations e = bundle_equations(fit.bundle, shape, by_frame[f], freedom);
@@ -48,8 +47,8 @@ ReducedEquations reduce(const BundleFit& fit, const BoardShape& shape, const Bun
     ++seen;
     const Rows6 X = factor.solve(e.H_frame_shared[f]);
     const Matrix6d M = motion_of_frame(fit.bundle.T_rig_board[f]);
-    reduced.S_frame.push_back(e.H - priors - e.H_frame_shared[f].transpose() * X);
-    reduced.score_frame.push_back(e.g - X.transpose() * e.g_frame[f]);
+    reduced.S_frame.push_back(e.H - priors.H - e.H_frame_shared[f].transpose() * X);
+    reduced.score_frame.push_back(e.g - priors.g - X.transpose() * e.g_frame[f]);
     reduced.S += reduced.S_frame.back();
     reduced.B += M * X;
     reduced.own_motion += M * factor.solve(M.transpose());

@@ -83,9 +83,8 @@ BundleFit fit_bundle(const BoardBundle& start, const BoardShape& shape, std::vec
   return fit;
 }
 
-BundleFit fit_corners(const BundleFit& fit, const BoardShape& shape, BundleFreedom& freedom,
+BundleFit fit_corners(const BundleFit& fit, const BoardShape& shape, const BundleFreedom& freedom,
                       const BundleFitOptions& options) {
-  freedom.corners = true;
   BoardBundle start = fit.bundle;
   start.warp.offsets_m.assign(shape.corners_m.size(), Eigen::Vector3d::Zero());
   return fit_bundle(start, shape, fit.views, freedom, options);

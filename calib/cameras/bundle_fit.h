@@ -29,9 +29,8 @@ struct BundleFit {
 BundleFit fit_bundle(const BoardBundle& start, const BoardShape& shape, std::vector<BundleView> views,
                      const BundleFreedom& freedom, const BundleFitOptions& options = {});
 
-/// A fit whose corners of the board are found too, from one that took the board as bulging at most; `freedom` is that
-/// of the given fit, its corners are set free.
-BundleFit fit_corners(const BundleFit& fit, const BoardShape& shape, BundleFreedom& freedom,
+/// A fit with the board's corners free, from one that took the board as bulging at most.
+BundleFit fit_corners(const BundleFit& fit, const BoardShape& shape, const BundleFreedom& freedom,
                       const BundleFitOptions& options = {});
 
 /// Root mean square length of the residuals of the corners with weight (all: also of those without), px; 0 for none.

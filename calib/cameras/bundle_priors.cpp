@@ -47,4 +47,17 @@ std::vector<BundlePrior> bundle_priors(const BoardBundle& bundle, const BoardSha
   return priors;
 }
 
+Eigen::VectorXd rigid_part(const BoardBundle& bundle, const BoardShape& shape) {
+  Eigen::VectorXd moved = Eigen::VectorXd::Zero(7);
+  for (std::size_t i = 0; i < bundle.warp.offsets_m.size(); ++i) {
+    moved += shape.rigid_modes.middleRows<3>(3 * static_cast<Eigen::Index>(i)).transpose() * bundle.warp.offsets_m[i];
+  }
+  return moved;
+}
+
+double rigid_information(const BoardShape& shape) {
+  const double sigma = 1e-6 * shape.extent_m;  // nothing that one would notice, and nothing that spoils the equations
+  return 1.0 / (sigma * sigma);
+}
+
 }  // namespace alidade

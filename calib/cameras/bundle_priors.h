@@ -19,4 +19,11 @@ struct BundlePrior {
 std::vector<BundlePrior> bundle_priors(const BoardBundle& bundle, const BoardShape& shape,
                                        const BundleFreedom& freedom);
 
+/// How much the corners' offsets move, turn and scale the whole board, in shape.rigid_modes.
+Eigen::VectorXd rigid_part(const BoardBundle& bundle, const BoardShape& shape);
+
+/// That they do not, as information of each mode (1/m²): the board's poses say where it is, and its stated size is true
+/// of all corners together.
+double rigid_information(const BoardShape& shape);
+
 }  // namespace alidade

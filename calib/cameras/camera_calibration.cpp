@@ -46,9 +46,16 @@ std::vector<BundleView> distinct_views(std::span<const BoardView> views, const C
   return distinct;
 }
 
-std::vector<LensModel> lenses_to_try(const CameraCalibrationOptions& options) {
-  if (options.lens) return {*options.lens};
-  return {LensModel::Radial, LensModel::Brown, LensModel::Rational, LensModel::Fisheye};
+// In order of parameters.
+std::vector<CameraModel> models_to_try(const CameraCalibrationOptions& options) {
+  std::vector<LensModel> lenses{LensModel::Radial, LensModel::Brown, LensModel::Rational, LensModel::Fisheye};
+  if (options.lens) lenses = {*options.lens};
+  std::vector<CameraModel> models;
+  for (const bool free_corners : {false, true}) {
+    if (options.free_corners && *options.free_corners != free_corners) continue;
+    for (const LensModel lens : lenses) models.push_back({lens, free_corners});
+  }
+  return models;
 }
 
 struct Tried {
@@ -56,13 +63,13 @@ struct Tried {
   BundleFit fit;
 };
 
-std::optional<Tried> try_lens(LensModel lens, const ImageExtent& image, const BoardShape& shape,
-                              const std::vector<BundleView>& views, const CameraCalibrationOptions& options) {
-  auto fit = fit_camera(lens, image, shape, views, options.fit);
+std::optional<Tried> try_model(const CameraModel& model, const ImageExtent& image, const BoardShape& shape,
+                               const std::vector<BundleView>& views, const CameraCalibrationOptions& options) {
+  auto fit = fit_camera(model, image, shape, views, options.fit);
   if (!fit) return std::nullopt;
-  Tried tried{{lens, rms_px(fit->bundle, shape, fit->views), 0.0}, std::move(*fit)};
+  Tried tried{{model, rms_px(fit->bundle, shape, fit->views), 0.0}, std::move(*fit)};
   const int folds = std::min(options.folds, static_cast<int>(views.size()));
-  const auto held_out = held_out_rms_px(lens, image, shape, views, options.fit, folds);
+  const auto held_out = held_out_rms_px(model, image, shape, views, options.fit, folds);
   tried.trial.held_out_rms_px = held_out.value_or(std::numeric_limits<double>::quiet_NaN());
   return tried;
 }
@@ -110,7 +117,7 @@ Outcome judge(const CameraCalibration& calibration, const CameraCalibrationOptio
 void finish(const BoardShape& shape, const CameraCalibrationOptions& options, CameraCalibration& calibration) {
   const BundleFit& fit = calibration.fit;
   calibration.camera = fit.bundle.cameras.front().camera;
-  calibration.freedom.intrinsics = {free_intrinsics(calibration.lens)};
+  calibration.freedom = calibration.model.freedom();
   calibration.rms_px = rms_px(fit.bundle, shape, fit.views);
   calibration.rms_all_px = rms_px(fit.bundle, shape, fit.views, true);
   calibration.tilt_spread_rad = tilt_spread_rad(fit.bundle, fit.views, 0);
@@ -145,21 +152,21 @@ CameraCalibration calibrate_camera(const ImageExtent& image, const Board& board,
   calibration.outcome = Outcome::TooFewViews;
   if (distinct.size() < 3) return calibration;
   std::vector<Tried> tried;
-  const auto lenses = lenses_to_try(options);
-  for (std::size_t i = 0; i < lenses.size(); ++i) {
+  const auto models = models_to_try(options);
+  for (std::size_t i = 0; i < models.size(); ++i) {
     if (stop.stop_requested()) {
       calibration.outcome = Outcome::Stopped;
       return calibration;
     }
     if (progress)
-      progress({"fitting lenses", static_cast<std::int64_t>(i), static_cast<std::int64_t>(lenses.size()), ""});
-    if (auto t = try_lens(lenses[i], image, shape, distinct, options)) tried.push_back(std::move(*t));
+      progress({"fitting lenses", static_cast<std::int64_t>(i), static_cast<std::int64_t>(models.size()), ""});
+    if (auto t = try_model(models[i], image, shape, distinct, options)) tried.push_back(std::move(*t));
   }
   calibration.outcome = Outcome::Undetermined;
   if (tried.empty()) return calibration;
   const Tried& chosen = choose(tried, options.simpler_within);
   for (const Tried& t : tried) calibration.trials.push_back(t.trial);
-  calibration.lens = chosen.trial.lens;
+  calibration.model = chosen.trial.model;
   calibration.fit = chosen.fit;
   if (std::isfinite(chosen.trial.held_out_rms_px)) calibration.held_out_rms_px = chosen.trial.held_out_rms_px;
   finish(shape, options, calibration);

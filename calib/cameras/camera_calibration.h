@@ -17,8 +17,10 @@ namespace alidade {
 
 struct CameraCalibrationOptions {
   std::optional<LensModel> lens;  ///< empty: the one with the least held-out error
+  /// Whether the corners of the board are found too; empty: where that lowers the held-out error.
+  std::optional<bool> free_corners;
   int folds = 4;                  ///< of the cross-validation
-  double simpler_within = 1.01;   ///< a lens of fewer parameters is taken where its held-out error is at most this many
+  double simpler_within = 1.02;   ///< a lens of fewer parameters is taken where its held-out error is at most this many
                                   ///< times the least
   double repeated_view_px = 1.0;  ///< views whose corners lie closer than this show nothing new
   double least_tilt_deg = 8.0;    ///< between two boards: below it the focal length is a guess
@@ -51,7 +53,7 @@ struct ViewVerdict {
 struct CameraCalibration {
   CameraCalibrationOutcome outcome = CameraCalibrationOutcome::Calibrated;
   Camera camera;
-  LensModel lens = LensModel::Brown;
+  CameraModel model;
   BundleFreedom freedom;
   BundleFit fit;  ///< of the views that are not Repeated; its frames are theirs in order
   BundleCovariance covariance;

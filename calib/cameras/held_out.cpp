@@ -33,16 +33,24 @@ SquareSum misfit_of(const BoardBundle& fitted, const BoardShape& shape, const st
 
 }  // namespace
 
-std::optional<BundleFit> fit_camera(LensModel lens, const ImageExtent& image, const BoardShape& shape,
-                                    const std::vector<BundleView>& views, const BundleFitOptions& options) {
-  auto start = start_camera_bundle(lens, image, shape, views);
-  if (!start) return std::nullopt;
+BundleFreedom CameraModel::freedom() const {
   BundleFreedom freedom;
   freedom.intrinsics = {free_intrinsics(lens)};
-  return fit_bundle(start->bundle, shape, std::move(start->views), freedom, options);
+  freedom.corners = free_corners;
+  return freedom;
 }
 
-std::optional<double> held_out_rms_px(LensModel lens, const ImageExtent& image, const BoardShape& shape,
+std::optional<BundleFit> fit_camera(const CameraModel& model, const ImageExtent& image, const BoardShape& shape,
+                                    const std::vector<BundleView>& views, const BundleFitOptions& options) {
+  auto start = start_camera_bundle(model.lens, image, shape, views);
+  if (!start) return std::nullopt;
+  BundleFreedom regular = model.freedom();
+  regular.corners = false;
+  BundleFit fit = fit_bundle(start->bundle, shape, std::move(start->views), regular, options);
+  return model.free_corners ? fit_corners(fit, shape, model.freedom(), options) : fit;
+}
+
+std::optional<double> held_out_rms_px(const CameraModel& model, const ImageExtent& image, const BoardShape& shape,
                                       const std::vector<BundleView>& views, const BundleFitOptions& options,
                                       int folds) {
   SquareSum all;
@@ -56,7 +64,7 @@ std::optional<double> held_out_rms_px(LensModel lens, const ImageExtent& image, 
     }
     if (held_out.empty()) continue;
     if (training.size() < 3) return std::nullopt;
-    const auto fit = fit_camera(lens, image, shape, training, options);
+    const auto fit = fit_camera(model, image, shape, training, options);
     if (!fit) return std::nullopt;
     const SquareSum squares = misfit_of(fit->bundle, shape, held_out);
     all.sum += squares.sum;

@@ -62,12 +62,14 @@ void fit_jointly(const BoardShape& shape, std::span<const RigCameraViews> camera
   BoardBundle start;
   for (std::size_t c = 0; c < cameras.size(); ++c) {
     start.cameras.push_back({rig.alone[c].camera, T_rig_camera[c]});
-    rig.freedom.intrinsics.push_back(free_intrinsics(rig.alone[c].lens));
+    rig.freedom.intrinsics.push_back(free_intrinsics(rig.alone[c].model.lens));
   }
   start.T_rig_board = place_frames(placed, T_rig_camera, frame_count(cameras));
-  start.warp = rig.alone.front().fit.bundle.warp;
   const double begin = processor_time_s();
   rig.fit = fit_bundle(start, shape, joint_views(cameras, placed), rig.freedom, options.fit);
+  rig.freedom.corners = std::any_of(rig.alone.begin(), rig.alone.end(),
+                                    [](const CameraCalibration& alone) { return alone.model.free_corners; });
+  if (rig.freedom.corners) rig.fit = fit_corners(rig.fit, shape, rig.freedom, options.fit);
   rig.solve_s = processor_time_s() - begin;
 }
 
