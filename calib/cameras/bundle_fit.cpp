@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/cameras/bundle_priors.h"
+
 namespace alidade {
 namespace {
 
@@ -83,10 +85,27 @@ BundleFit fit_bundle(const BoardBundle& start, const BoardShape& shape, std::vec
   return fit;
 }
 
+namespace {
+
+// The same bulge as offsets of the corners, the whole board where it should be.
+BoardWarp as_offsets(const BoardWarp& warp, const BoardShape& shape) {
+  BoardWarp offsets;
+  for (std::size_t i = 0; i < shape.corners_m.size(); ++i) {
+    offsets.offsets_m.push_back(shape.corner(static_cast<int>(i), warp) - shape.corners_m[i]);
+  }
+  const Eigen::VectorXd moved = shape.rigid_modes * rigid_part(offsets, shape);
+  for (std::size_t i = 0; i < offsets.offsets_m.size(); ++i) {
+    offsets.offsets_m[i] -= moved.segment<3>(3 * static_cast<Eigen::Index>(i));
+  }
+  return offsets;
+}
+
+}  // namespace
+
 BundleFit fit_corners(const BundleFit& fit, const BoardShape& shape, const BundleFreedom& freedom,
                       const BundleFitOptions& options) {
   BoardBundle start = fit.bundle;
-  start.warp.offsets_m.assign(shape.corners_m.size(), Eigen::Vector3d::Zero());
+  start.warp = as_offsets(start.warp, shape);
   return fit_bundle(start, shape, fit.views, freedom, options);
 }
 

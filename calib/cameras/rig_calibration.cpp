@@ -69,6 +69,7 @@ void fit_jointly(const BoardShape& shape, std::span<const RigCameraViews> camera
   rig.fit = fit_bundle(start, shape, joint_views(cameras, placed), rig.freedom, options.fit);
   rig.freedom.corners = std::any_of(rig.alone.begin(), rig.alone.end(),
                                     [](const CameraCalibration& alone) { return alone.model.free_corners; });
+  rig.freedom.warp = !rig.freedom.corners;
   if (rig.freedom.corners) rig.fit = fit_corners(rig.fit, shape, rig.freedom, options.fit);
   rig.solve_s = processor_time_s() - begin;
 }
