@@ -59,6 +59,16 @@ bool weigh(const std::vector<std::vector<double>>& lengths, Weighting weighting,
   return has_changed;
 }
 
+// Least squares would never come back from a whole view of another moment: views that are far off at the start wait
+// until the others are solved.
+void hold_back_far_views(const BoardShape& shape, const BundleFitOptions& options, BundleFit& fit) {
+  measure_scales(residual_sigmas(fit.bundle, shape, fit.views), fit);
+  for (std::size_t v = 0; v < fit.views.size(); ++v) {
+    if (fit.view_scale[v] <= options.view_scale_limit * fit.scale) continue;
+    std::fill(fit.views[v].weights.begin(), fit.views[v].weights.end(), 0.0);
+  }
+}
+
 }  // namespace
 
 BundleFit fit_bundle(const BoardBundle& start, const BoardShape& shape, std::vector<BundleView> views,
@@ -66,6 +76,7 @@ BundleFit fit_bundle(const BoardBundle& start, const BoardShape& shape, std::vec
   BundleFit fit;
   fit.bundle = start;
   fit.views = std::move(views);
+  hold_back_far_views(shape, options, fit);
   constexpr int kFadingRounds = 2;
   for (int round = 0; round < options.most_rounds; ++round) {
     const bool is_first = round == 0;

@@ -23,9 +23,10 @@ double processor_time_s() {
 std::vector<PlacedBoard> placed_boards(const RigCameraViews& camera, const CameraCalibration& alone) {
   std::vector<PlacedBoard> boards;
   for (std::size_t i = 0; i < camera.views.size(); ++i) {
-    int index = alone.frame_of_view[i];
-    if (index < 0) index = alone.frame_of_view[static_cast<std::size_t>(alone.verdicts[i].repeats)];
-    if (alone.verdicts[i].use == ViewUse::Rejected) continue;
+    const int repeats = alone.verdicts[i].repeats;
+    const std::size_t placed = repeats < 0 ? i : static_cast<std::size_t>(repeats);
+    if (alone.verdicts[placed].use == ViewUse::Rejected) continue;
+    const int index = alone.frame_of_view[placed];
     boards.push_back({camera.views[i].frame, alone.fit.bundle.T_rig_board[static_cast<std::size_t>(index)],
                       static_cast<int>(camera.views[i].corners.size())});
   }
