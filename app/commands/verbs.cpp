@@ -4,9 +4,18 @@
 namespace alidade {
 
 std::vector<Verb> all_verbs() {
-  return {track_camera_verb(),    track_body_verb(),    calibrate_detectors_verb(), map_verb(),
-          simulate_camera_verb(), simulate_body_verb(), experiment_camera_verb(),   experiment_body_verb(),
-          evaluate_verb(),        view_verb()};
+  return {track_camera_verb(),
+          track_body_verb(),
+          calibrate_board_verb(),
+          calibrate_detectors_verb(),
+          map_verb(),
+          simulate_camera_verb(),
+          simulate_body_verb(),
+          simulate_board_verb(),
+          experiment_camera_verb(),
+          experiment_body_verb(),
+          evaluate_verb(),
+          view_verb()};
 }
 
 }  // namespace alidade

@@ -13,10 +13,12 @@ std::vector<Verb> all_verbs();
 
 Verb track_camera_verb();
 Verb track_body_verb();
+Verb calibrate_board_verb();
 Verb calibrate_detectors_verb();
 Verb map_verb();
 Verb simulate_camera_verb();
 Verb simulate_body_verb();
+Verb simulate_board_verb();
 Verb experiment_camera_verb();
 Verb experiment_body_verb();
 Verb evaluate_verb();
