@@ -27,8 +27,12 @@ class Command {
   OptionFields options_;
 };
 
-/// Whether a verb can do without -o DIR.
-enum class OutputUse { Required, Optional };
+/// What a verb wants of -o.
+enum class OutputUse {
+  Required,  ///< a directory
+  Optional,  ///< a directory, or none
+  File,      ///< the one file that it writes
+};
 
 /// How a verb stands on the command line.
 struct Verb {

@@ -81,7 +81,7 @@ CommandLine::CommandLine(const std::vector<Verb>& verbs)
     command->options().add_flags(app);
     // Not a flag of its own: --seed is one of the shared flags already, but options.yaml must hold it to be complete.
     command->options().add("seed", flags_.seed, "", "seed of all random choices");
-    entries_.push_back({verb.name, &app, std::move(command)});
+    entries_.push_back({verb.name, &app, std::move(command), verb.output});
   }
 }
 
@@ -99,8 +99,10 @@ CLI::App& CommandLine::parent_of(const std::string& verb_name) {
 void CommandLine::add_shared_flags(CLI::App& app, OutputUse output) {
   const std::string group = "Flags of every verb";
   app.set_version_flag("--version", std::string("alidade ") + kVersion)->group(group);
-  CLI::Option* out = app.add_option("-o,--output", flags_.output, "directory of the results")->type_name("DIR");
-  out->group(group)->required(output == OutputUse::Required);
+  const bool is_file = output == OutputUse::File;
+  CLI::Option* out =
+      app.add_option("-o,--output", flags_.output, is_file ? "the file to write" : "directory of the results");
+  out->type_name(is_file ? "FILE" : "DIR")->group(group)->required(output != OutputUse::Optional);
   CLI::Option* quiet = app.add_flag("--quiet", flags_.quiet, "print warnings and errors only")->group(group);
   CLI::Option* json = app.add_flag("--json", flags_.json, "print progress and result as JSON lines")->group(group);
   json->excludes(quiet);
@@ -129,7 +131,7 @@ std::optional<Request> CommandLine::parse(int argc, const char* const* argv) {
   if (!flags_.config.empty()) options.read(flags_.config);
   if (chosen->app->get_option("--seed")->count() > 0) flags_.seed = flagged_seed;
   options.validate(flags_.config.empty() ? "options" : flags_.config.string());
-  return Request{chosen->name, flags_, chosen->command.get()};
+  return Request{chosen->name, flags_, chosen->command.get(), chosen->output};
 }
 
 }  // namespace alidade

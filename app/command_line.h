@@ -27,6 +27,7 @@ struct Request {
   std::string verb;  ///< as typed: "track camera"
   SharedFlags flags;
   Command* command;
+  OutputUse output;  ///< what flags.output is
 };
 
 /// The parser of the whole command line.
@@ -43,6 +44,7 @@ class CommandLine {
     std::string name;
     CLI::App* app;
     std::unique_ptr<Command> command;
+    OutputUse output;
   };
 
   CLI::App& parent_of(const std::string& verb_name);

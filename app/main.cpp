@@ -21,7 +21,8 @@ ExitCode run(int argc, char** argv) {
   CommandLine command_line(all_verbs());
   const std::optional<Request> request = command_line.parse(argc, argv);
   if (!request) return ExitCode::Success;
-  if (!request->flags.output.empty()) check_result_directory(request->flags.output);
+  const bool wants_directory = request->output != OutputUse::File && !request->flags.output.empty();
+  if (wants_directory) check_result_directory(request->flags.output);
   const Interruption interruption;  // before any other thread
   ProgressDisplay display(choose_style(request->flags.quiet, request->flags.json), std::cout, std::cerr,
                           terminal_columns());

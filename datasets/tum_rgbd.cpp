@@ -66,10 +66,10 @@ bool is_of_the_kinect(const fs::path& folder) {
 std::optional<Camera> published_camera(const fs::path& folder) {
   const std::string name = fs::weakly_canonical(folder).filename();
   if (name.find("freiburg1") != std::string::npos) {
-    return Camera{640, 480, 517.3, 516.5, 318.6, 255.3, {0.2624, -0.9531, -0.0054, 0.0026, 1.1633}};
+    return Camera{640, 480, 517.3, 516.5, 318.6, 255.3, BrownConrady{0.2624, -0.9531, -0.0054, 0.0026, 1.1633}};
   }
   if (name.find("freiburg2") != std::string::npos) {
-    return Camera{640, 480, 520.9, 521.0, 325.1, 249.7, {0.2312, -0.7849, -0.0033, -0.0001, 0.9172}};
+    return Camera{640, 480, 520.9, 521.0, 325.1, 249.7, BrownConrady{0.2312, -0.7849, -0.0033, -0.0001, 0.9172}};
   }
   if (name.find("freiburg3") != std::string::npos) return Camera{640, 480, 535.4, 539.2, 320.1, 247.6, {}};
   return std::nullopt;

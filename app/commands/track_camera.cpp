@@ -24,7 +24,8 @@ class TrackCameraCommand : public Command {
  public:
   explicit TrackCameraCommand(CLI::App& flags) {
     flags.add_option("SOURCE", source_, "video, folder or glob of images, or data set folder")->required();
-    flags.add_option("--camera", camera_file_, "intrinsics: our YAML, OpenCV, ROS, COLMAP, or the data set's file");
+    flags.add_option("--camera", camera_file_,
+                     "intrinsics: our YAML, OpenCV, ROS, Kalibr, COLMAP, mrcal, or the data set's file");
     flags.add_option("--map", map_file_, "track in this map (map.ply, or a result directory) instead of making one");
     flags.add_option("--init-poses", init_poses_, "trajectory with the poses of the first two frames");
     flags.add_option("--scale", scale_, "marker:SIDE_M[:ID] or distance:FRAME_A:FRAME_B:METRES");

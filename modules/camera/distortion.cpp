@@ -150,13 +150,16 @@ bool folds(const Fisheye& k, const Eigen::Vector3d& p) {
 std::optional<Eigen::Vector3d> direction_at(const Fisheye& k, const Eigen::Vector2d& target) {
   const double radius = target.norm();
   if (radius < 1e-12) return Eigen::Vector3d(target.x(), target.y(), 1.0).normalized();
-  double theta = std::min(radius, 0.9 * std::numbers::pi);
-  for (int i = 0; i < 30; ++i) {
+  double low = 0, high = std::numbers::pi, theta = std::min(radius, 0.9 * high);
+  for (int i = 0; i < 60; ++i) {
     const FisheyeRadius at = fisheye_radius(k, theta);
     const double error = radius - at.value;
-    if (std::abs(error) < 1e-13) break;
-    if (!(at.slope > 1e-6)) return std::nullopt;
-    theta += std::clamp(error / at.slope, -0.3, 0.3);
+    // The radius grows up to the fold: where it no longer does, the angle is too large whatever its radius.
+    const bool grows = at.slope > 0;
+    if (grows && std::abs(error) < 1e-13) break;
+    (grows && error > 0 ? low : high) = theta;
+    theta += error / at.slope;
+    if (!grows || !(theta > low && theta < high)) theta = 0.5 * (low + high);
   }
   if (!(std::abs(fisheye_radius(k, theta).value - radius) < 1e-9) || theta > std::numbers::pi) return std::nullopt;
   const Eigen::Vector2d side = std::sin(theta) / radius * target;

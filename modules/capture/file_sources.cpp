@@ -158,4 +158,10 @@ std::unique_ptr<FrameSource> open_files(const std::string& source, std::optional
   return open_video(source, fps_hz);
 }
 
+bool is_video_name(const fs::path& path) {
+  const fs::path extension = path.extension();
+  const bool is_list = extension == ".txt" || extension == ".lst" || extension == ".csv";
+  return fs::is_regular_file(path) && !is_list && !has_image_extension(path);
+}
+
 }  // namespace alidade

@@ -32,4 +32,7 @@ std::unique_ptr<FrameSource> open_video(const std::filesystem::path& path, std::
 /// false. Throws InputError where there is nothing of that name or no image in it.
 std::unique_ptr<FrameSource> open_files(const std::string& source, std::optional<double> fps_hz = std::nullopt);
 
+/// Whether open_files takes a file of this name for a video.
+bool is_video_name(const std::filesystem::path& path);
+
 }  // namespace alidade

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "core/errors.h"
-#include "io/atomic_file.h"
 #include "io/camera_records.h"
 #include "io/text_lines.h"
 
@@ -16,8 +15,8 @@ namespace alidade {
 namespace {
 
 constexpr const char* kFormats =
-    "known are Alidade's and OpenCV's YAML, OpenCV's XML, COLMAP's cameras.txt, 'fx 500 fy 500 cx 320 cy 240', "
-    "Strecha's *.camera and KITTI's calib.txt";
+    "known are the YAML of Alidade, OpenCV, ROS and Kalibr, OpenCV's XML, COLMAP's cameras.txt, mrcal's *.cameramodel, "
+    "'fx 500 fy 500 cx 320 cy 240', Strecha's *.camera and KITTI's calib.txt";
 
 bool is_number(std::string_view word) {
   return !word.empty() && word.find_first_not_of("0123456789.+-eE") == std::string_view::npos;
@@ -47,6 +46,9 @@ CameraRecords parse(const std::filesystem::path& path) {
   if (lines.front().text.starts_with("<?xml") || lines.front().text.starts_with("<opencv_storage")) {
     return parse_opencv_xml(path, text);
   }
+  if (lines.front().text.starts_with('{') && text.find("lensmodel") != std::string::npos) {
+    return parse_mrcal_model(path, text);
+  }
   if (std::any_of(lines.begin(), lines.end(), is_projection_line)) return parse_kitti_calibration(path, lines);
   if (is_yaml(path, lines)) return parse_camera_yaml(path, text);
   const auto words = split_words(lines.front().text);
@@ -65,8 +67,8 @@ int line_of(const CameraRecord& record, const std::string& fault) {
   return found == record.lines.end() ? record.line : found->second;
 }
 
-NamedCamera checked(const std::filesystem::path& path, const CameraRecord& record, std::optional<ImageSize> size) {
-  Camera camera = record.camera;
+CameraRecord checked(const std::filesystem::path& path, CameraRecord record, std::optional<ImageSize> size) {
+  Camera& camera = record.camera;
   if (camera.width == 0 && camera.height == 0) {
     if (!size) throw InputError(path, record.line, "says no image size", "give it the images' width and height");
     camera.width = size->width;
@@ -76,10 +78,30 @@ NamedCamera checked(const std::filesystem::path& path, const CameraRecord& recor
     throw InputError(path, line_of(record, *fault), fmt::format("camera '{}': {}", record.name, *fault),
                      "correct the file or calibrate the camera again");
   }
-  return {record.name, camera};
+  return record;
 }
 
 }  // namespace
+
+CameraRecords read_camera_records(const std::filesystem::path& path, std::optional<ImageSize> size_of_images) {
+  CameraRecords records;
+  for (CameraRecord& record : parse(path)) records.push_back(checked(path, std::move(record), size_of_images));
+  return records;
+}
+
+Eigen::Isometry3d pose_from(const std::filesystem::path& path, int line, std::span<const double> R,
+                            std::span<const double> t) {
+  using Rows = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  const bool shaped = R.size() == 9 && t.size() == 3;
+  const Rows M = shaped ? Rows(Eigen::Map<const Rows>(R.data())) : Rows::Zero();
+  if (!(M.transpose() * M).isIdentity(1e-3) || !(M.determinant() > 0)) {
+    throw InputError(path, line, "is no pose", "a 3x3 rotation matrix and a translation in m are wanted");
+  }
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = Eigen::Quaterniond(M).normalized().toRotationMatrix();
+  T.translation() = Eigen::Map<const Eigen::Vector3d>(t.data());
+  return T;
+}
 
 void set_intrinsics(const std::filesystem::path& path, int line, std::span<const double> K, Camera& camera) {
   const bool shaped = K.size() == 9 && K[3] == 0 && K[6] == 0 && K[7] == 0 && K[8] == 1;
@@ -120,7 +142,9 @@ Fisheye fisheye_from(const std::filesystem::path& path, int line, std::span<cons
 
 std::vector<NamedCamera> read_cameras(const std::filesystem::path& path, std::optional<ImageSize> size_of_images) {
   std::vector<NamedCamera> cameras;
-  for (const CameraRecord& record : parse(path)) cameras.push_back(checked(path, record, size_of_images));
+  for (const CameraRecord& record : read_camera_records(path, size_of_images)) {
+    cameras.push_back({record.name, record.camera});
+  }
   return cameras;
 }
 
@@ -134,53 +158,6 @@ Camera read_camera(const std::filesystem::path& path, std::optional<ImageSize> s
                      "keep only the one of these images");
   }
   return cameras.front().camera;
-}
-
-std::string quoted_yaml(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    quoted += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-  }
-  return quoted + '"';
-}
-
-namespace {
-
-std::string_view model_name(const Distortion& distortion) {
-  if (std::holds_alternative<Fisheye>(distortion)) return "fisheye";
-  return is_pinhole(distortion) ? "pinhole" : "brown_conrady";
-}
-
-// "k1: -0.26, k2: 0.1, ..."; Brown and Conrady's k4, k5, k6 only where they are used.
-std::string format_coefficients(const Distortion& distortion) {
-  const DistortionCoefficients values = coefficients(distortion);
-  const auto names = coefficient_names(distortion);
-  Eigen::Index count = values.size();
-  while (count > 5 && values[count - 1] == 0) --count;
-  std::string text;
-  for (Eigen::Index i = 0; i < count; ++i) {
-    text += fmt::format("{}{}: {}", i == 0 ? "" : ", ", names[static_cast<std::size_t>(i)], values[i]);
-  }
-  return text;
-}
-
-}  // namespace
-
-std::string format_camera(const Camera& c, const std::string& indent) {
-  std::string text = fmt::format("{}model: {}\n{}resolution_px: [{}, {}]\n", indent, model_name(c.distortion), indent,
-                                 c.width, c.height);
-  text += fmt::format("{}intrinsics_px: {{fx: {}, fy: {}, cx: {}, cy: {}}}\n", indent, c.fx, c.fy, c.cx, c.cy);
-  if (!is_pinhole(c.distortion)) {
-    text += fmt::format("{}distortion: {{{}}}\n", indent, format_coefficients(c.distortion));
-  }
-  if (c.readout_s != 0) text += fmt::format("{}readout_s: {}\n", indent, c.readout_s);
-  return text;
-}
-
-void write_camera(const std::filesystem::path& path, const Camera& camera, const std::string& name) {
-  std::string text = "# pixel (0, 0) is the centre of the top-left pixel; distortion in OpenCV's order and signs\n";
-  write_file(path, text + fmt::format("camera:\n  name: {}\n", quoted_yaml(name)) + format_camera(camera, "  "));
 }
 
 }  // namespace alidade

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
-#include <cmath>
 
 #include <fmt/format.h>
 
@@ -12,46 +11,6 @@ namespace alidade {
 namespace {
 
 using Path = std::filesystem::path;
-
-// A model of COLMAP's, and where its parameters go. Source: colmap, src/base/camera_models.h.
-struct ColmapModel {
-  std::string_view name;
-  std::size_t parameters;
-};
-constexpr std::array<ColmapModel, 7> kColmapModels{{{"SIMPLE_PINHOLE", 3},
-                                                    {"PINHOLE", 4},
-                                                    {"SIMPLE_RADIAL", 4},
-                                                    {"RADIAL", 5},
-                                                    {"OPENCV", 8},
-                                                    {"FULL_OPENCV", 12},
-                                                    {"OPENCV_FISHEYE", 8}}};
-
-const ColmapModel& find_model(const Path& path, int line, std::string_view name) {
-  std::vector<std::string_view> known;
-  for (const ColmapModel& model : kColmapModels) {
-    if (model.name == name) return model;
-    known.push_back(model.name);
-  }
-  throw InputError(path, line, fmt::format("COLMAP's camera model '{}' is not supported", name),
-                   fmt::format("supported are {}", fmt::join(known, ", ")));
-}
-
-Camera colmap_camera(const Path& path, int line, std::string_view model, const std::vector<double>& p) {
-  const bool one_focal_length = model.starts_with("SIMPLE") || model == "RADIAL";
-  const std::size_t centre = one_focal_length ? 1 : 2;
-  Camera c;
-  c.fx = p[0];
-  c.fy = one_focal_length ? p[0] : p[1];
-  c.cx = p[centre] - 0.5;  // COLMAP's origin is the corner of the top-left pixel, ours its centre
-  c.cy = p[centre + 1] - 0.5;
-  const auto k = std::span(p).subspan(centre + 2);
-  if (model == "OPENCV_FISHEYE") {
-    c.distortion = fisheye_from(path, line, k);
-  } else {
-    c.distortion = distortion_from(path, line, k);
-  }
-  return c;
-}
 
 double* value_named(Camera& c, std::string_view name) {
   auto& k = std::get<BrownConrady>(c.distortion);
@@ -93,29 +52,6 @@ std::vector<double> matrix_rows(const Path& path, std::span<const TextLine> line
 }
 
 }  // namespace
-
-CameraRecords parse_colmap_cameras(const Path& path, const std::vector<TextLine>& lines) {
-  CameraRecords records;
-  for (const TextLine& line : lines) {
-    const auto words = split_words(line.text);
-    if (words.size() < 4) throw InputError(path, line.number, "CAMERA_ID MODEL WIDTH HEIGHT PARAMS... are wanted", "");
-    const ColmapModel& model = find_model(path, line.number, words[1]);
-    if (words.size() != 4 + model.parameters) {
-      throw InputError(path, line.number,
-                       fmt::format("{} has {} parameters, got {}", model.name, model.parameters, words.size() - 4), "");
-    }
-    std::vector<double> parameters;
-    for (std::size_t i = 4; i < words.size(); ++i) parameters.push_back(parse_number(path, line.number, words[i]));
-    CameraRecord record;
-    record.name = words[0];
-    record.line = line.number;
-    record.camera = colmap_camera(path, line.number, model.name, parameters);
-    record.camera.width = parse_size(path, line.number, words[2]);
-    record.camera.height = parse_size(path, line.number, words[3]);
-    records.push_back(record);
-  }
-  return records;
-}
 
 CameraRecords parse_camera_words(const Path& path, const std::vector<TextLine>& lines) {
   CameraRecord record;

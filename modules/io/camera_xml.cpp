@@ -106,6 +106,11 @@ CameraRecords parse_opencv_xml(const Path& path, const std::string& text) {
     read_size(path, document, record);
     records.push_back(record);
   }
+  const auto R = document.find("R"), t = document.find("T");
+  if (R && t && records.size() == 2 && records[0].name == "left" && records[1].name == "right") {
+    const auto rotation = document.numbers(*R), translation = document.numbers(*t);
+    records[1].T_rig_camera = pose_from(path, R->line, rotation, translation).inverse();
+  }
   if (text.find("</opencv_storage>") == std::string::npos) {
     throw InputError(path, 0, "damaged XML: the end </opencv_storage> is missing", "write the file again");
   }

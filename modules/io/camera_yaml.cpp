@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/camera_yaml.h"
 
+#include <algorithm>
 #include <array>
+#include <set>
 
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
@@ -9,6 +11,7 @@
 #include "core/errors.h"
 #include "core/nearest_name.h"
 #include "io/camera_records.h"
+#include "io/pose_yaml.h"
 #include "io/yaml_nodes.h"
 
 namespace alidade {
@@ -16,18 +19,8 @@ namespace {
 
 using Path = std::filesystem::path;
 
-// All numbers in a scalar, a list, a list of lists, or the `data` of a matrix, in order.
-void append_numbers(const Path& path, const YAML::Node& node, std::vector<double>& numbers) {
-  if (node.IsMap() && node["data"]) return append_numbers(path, node["data"], numbers);
-  if (!node.IsSequence()) return numbers.push_back(yaml_number(path, node));
-  for (const YAML::Node& item : node) append_numbers(path, item, numbers);
-}
-
-std::vector<double> numbers_of(const Path& path, const YAML::Node& node) {
-  std::vector<double> numbers;
-  if (!node.IsNull()) append_numbers(path, node, numbers);
-  return numbers;
-}
+constexpr const char* kCameraExample =
+    "camera: {model: pinhole, resolution_px: [640, 480], intrinsics_px: {fx: 500, ...}}";
 
 YAML::Node required(const Path& path, const YAML::Node& map, const char* key) {
   return yaml_value(path, map, key, "the camera");
@@ -71,88 +64,54 @@ CameraRecords read_own(const Path& path, const YAML::Node& root) {
   constexpr std::array<std::string_view, 2> kKeys{"camera", "cameras"};
   refuse_unknown_keys(path, root, kKeys);
   if (root["camera"] && root["cameras"]) throw InputError(path, 1, "has both 'camera' and 'cameras'", "keep one");
-  if (root["camera"]) return {read_camera_node(path, root["camera"], 0)};
+  if (root["camera"]) return {read_rig_camera_node(path, root["camera"], 0)};
   const YAML::Node list = root["cameras"];
   if (!list.IsSequence() || list.size() == 0)
     throw InputError(path, yaml_line(list), "a list of cameras is wanted", "");
   CameraRecords records;
-  for (const YAML::Node& node : list) records.push_back(read_camera_node(path, node, records.size()));
-  return records;
-}
-
-// The names that calibration programs give to K and the distortion.
-struct KeyPair {
-  const char* name;
-  const char* matrix;
-  const char* distortion;
-};
-constexpr KeyPair kKeyPairs[] = {
-    {"camera", "camera_matrix", "distortion_coefficients"},
-    {"camera", "camera_matrix", "dist_coeff"},
-    {"camera", "camera_matrix", "dist_coeffs"},
-    {"camera", "camera_matrix", "distortion"},
-    {"camera", "Camera_Matrix", "Distortion_Coefficients"},
-    {"camera", "cameraMatrix", "distCoeffs"},
-    {"camera", "K", "D"},
-    {"left", "M1", "D1"},
-    {"right", "M2", "D2"},
-    {"left", "K1", "D1"},
-    {"right", "K2", "D2"},
-};
-
-void read_opencv_size(const Path& path, const YAML::Node& root, CameraRecord& record) {
-  constexpr const char* kNames[][2] = {
-      {"image_width", "image_height"}, {"image_Width", "image_Height"}, {"width", "height"}};
-  for (const auto& [width, height] : kNames) {
-    if (!root[width] || !root[height]) continue;
-    record.camera.width = parse_size(path, yaml_line(root[width]), root[width].Scalar());
-    record.camera.height = parse_size(path, yaml_line(root[height]), root[height].Scalar());
-    record.lines["image"] = yaml_line(root[width]);
-  }
-}
-
-// ROS says so; OpenCV's own files do not tell a fisheye from a radial lens with four coefficients.
-bool is_equidistant(const YAML::Node& root) {
-  const YAML::Node model = root["distortion_model"];
-  return model && model.IsScalar() && (model.Scalar() == "equidistant" || model.Scalar() == "fisheye");
-}
-
-CameraRecord read_opencv_camera(const Path& path, const YAML::Node& root, const KeyPair& keys) {
-  CameraRecord record;
-  const YAML::Node matrix = root[keys.matrix];
-  record.name = keys.name;
-  record.line = yaml_line(matrix);
-  set_intrinsics(path, record.line, numbers_of(path, matrix), record.camera);
-  if (const YAML::Node distortion = root[keys.distortion]) {
-    const std::vector<double> values = numbers_of(path, distortion);
-    record.camera.distortion = is_equidistant(root) ? fisheye_from(path, yaml_line(distortion), values)
-                                                    : distortion_from(path, yaml_line(distortion), values);
-    record.lines["distortion"] = yaml_line(distortion);
-  }
-  read_opencv_size(path, root, record);
-  return record;
-}
-
-CameraRecords read_opencv(const Path& path, const YAML::Node& root) {
-  CameraRecords records;
-  for (const KeyPair& keys : kKeyPairs) {
-    if (!root[keys.matrix]) continue;
-    const bool first = records.empty() || records.back().line != yaml_line(root[keys.matrix]);
-    if (first)
-      records.push_back(read_opencv_camera(path, root, keys));
-    else if (root[keys.distortion])
-      records.back() = read_opencv_camera(path, root, keys);
+  std::set<std::string> names;
+  for (const YAML::Node& node : list) {
+    records.push_back(read_rig_camera_node(path, node, records.size()));
+    const std::string& name = records.back().name;
+    if (!names.insert(name).second) {
+      throw InputError(path, yaml_line(node), fmt::format("two cameras are named '{}'", name), "rename one");
+    }
   }
   return records;
 }
 
-}  // namespace
-
-CameraRecord read_camera_node(const Path& path, const YAML::Node& node, std::size_t index) {
-  require_yaml_map(path, node, "camera: {model: pinhole, resolution_px: [640, 480], intrinsics_px: {fx: 500, ...}}");
-  constexpr std::array<std::string_view, 6> kKeys{"name",          "model",      "resolution_px",
-                                                  "intrinsics_px", "distortion", "readout_s"};
+Eigen::MatrixXd read_intrinsics_covariance(const Path& path, const YAML::Node& node, const Camera& camera) {
+  require_yaml_map(path, node, "{parameters: [fx, fy, cx, cy], covariance: [...]}");
+  constexpr std::array<std::string_view, 2> kKeys{"parameters", "covariance"};
   refuse_unknown_keys(path, node, kKeys);
+  const YAML::Node list = yaml_value(path, node, "parameters", "the covariance");
+  if (!list.IsSequence() || list.size() == 0) {
+    throw InputError(path, yaml_line(list), "a list of names is wanted here", "e.g. [fx, fy, cx, cy]");
+  }
+  const std::vector<std::string> names = intrinsics_names(camera);
+  const std::vector<std::string_view> known(names.begin(), names.end());
+  std::vector<Eigen::Index> places;
+  for (const YAML::Node& item : list) {
+    const std::string name = yaml_choice(path, item, "parameter", known);
+    const Eigen::Index place = std::find(known.begin(), known.end(), name) - known.begin();
+    if (std::find(places.begin(), places.end(), place) != places.end()) {
+      throw InputError(path, yaml_line(item), fmt::format("'{}' is listed twice", name), "");
+    }
+    places.push_back(place);
+  }
+  const auto count = static_cast<Eigen::Index>(names.size());
+  Eigen::MatrixXd C = Eigen::MatrixXd::Zero(count, count);
+  const YAML::Node values = yaml_value(path, node, "covariance", "the covariance");
+  C(places, places) = read_covariance(path, values, static_cast<int>(places.size()));
+  return C;
+}
+
+constexpr std::array<std::string_view, 10> kCameraKeys{
+    "name",      "model",        "resolution_px",   "intrinsics_px",         "distortion",
+    "readout_s", "T_rig_camera", "pose_covariance", "intrinsics_covariance", "clock_offset_s"};
+constexpr std::size_t kKeysOfCameraAlone = 6;
+
+CameraRecord read_camera_map(const Path& path, const YAML::Node& node, std::size_t index) {
   CameraRecord record;
   record.line = yaml_line(node);
   record.name = node["name"] && node["name"].IsScalar() ? node["name"].Scalar() : fmt::format("camera {}", index);
@@ -174,6 +133,29 @@ CameraRecord read_camera_node(const Path& path, const YAML::Node& node, std::siz
   return record;
 }
 
+}  // namespace
+
+CameraRecord read_camera_node(const Path& path, const YAML::Node& node, std::size_t index) {
+  require_yaml_map(path, node, kCameraExample);
+  refuse_unknown_keys(path, node, std::span(kCameraKeys).first(kKeysOfCameraAlone));
+  return read_camera_map(path, node, index);
+}
+
+CameraRecord read_rig_camera_node(const Path& path, const YAML::Node& node, std::size_t index) {
+  require_yaml_map(path, node, kCameraExample);
+  refuse_unknown_keys(path, node, kCameraKeys);
+  CameraRecord record = read_camera_map(path, node, index);
+  if (const YAML::Node pose = node["T_rig_camera"]) record.T_rig_camera = read_pose(path, pose);
+  if (const YAML::Node covariance = node["pose_covariance"]) {
+    record.pose_covariance = read_covariance(path, covariance, 6);
+  }
+  if (const YAML::Node covariance = node["intrinsics_covariance"]) {
+    record.intrinsics_covariance = read_intrinsics_covariance(path, covariance, record.camera);
+  }
+  if (const YAML::Node offset = node["clock_offset_s"]) record.clock_offset_s = yaml_number(path, offset);
+  return record;
+}
+
 CameraRecords parse_camera_yaml(const Path& path, const std::string& text) {
   std::string yaml = text;
   // OpenCV writes "%YAML:1.0", which is no directive of YAML's; as a comment it keeps the line numbers.
@@ -181,10 +163,11 @@ CameraRecords parse_camera_yaml(const Path& path, const std::string& text) {
   const YAML::Node root = load_yaml(path, yaml);
   if (root.IsMap()) {
     if (root["camera"] || root["cameras"]) return read_own(path, root);
-    const CameraRecords records = read_opencv(path, root);
+    if (root["cam0"]) return read_kalibr_chain(path, root);
+    const CameraRecords records = read_opencv_yaml(path, root);
     if (!records.empty()) return records;
   }
-  throw InputError(path, 0, "holds no camera", "a key 'camera', 'cameras' or 'camera_matrix' is wanted");
+  throw InputError(path, 0, "holds no camera", "a key 'camera', 'cameras', 'cam0' or 'camera_matrix' is wanted");
 }
 
 }  // namespace alidade

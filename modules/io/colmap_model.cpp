@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <span>
 #include <stdexcept>
 #include <string>
 
@@ -12,6 +13,7 @@
 #include "core/errors.h"
 #include "io/atomic_file.h"
 #include "io/camera_file.h"
+#include "io/camera_records.h"
 #include "io/text_lines.h"
 
 namespace alidade {
@@ -20,22 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 
 const Eigen::Vector2d kCorner(0.5, 0.5);  // COLMAP's origin is the corner of the top-left pixel, ours its centre
-
-const char* model_name(const Distortion& distortion) {
-  if (std::holds_alternative<Fisheye>(distortion)) return "OPENCV_FISHEYE";
-  if (is_pinhole(distortion)) return "PINHOLE";
-  return coefficients(distortion).tail<4>().isZero(0) ? "OPENCV" : "FULL_OPENCV";
-}
-
-std::string camera_line(const Camera& c) {
-  const std::string_view model = model_name(c.distortion);
-  std::string line =
-      fmt::format("1 {} {} {} {} {} {} {}", model, c.width, c.height, c.fx, c.fy, c.cx + 0.5, c.cy + 0.5);
-  const DistortionCoefficients k = coefficients(c.distortion);
-  const Eigen::Index count = model == "PINHOLE" ? 0 : model == "OPENCV" ? 4 : k.size();
-  for (Eigen::Index i = 0; i < count; ++i) line += fmt::format(" {}", k[i]);
-  return line + "\n";
-}
 
 std::string image_lines(const Keyframe& keyframe, std::size_t id) {
   const Eigen::Isometry3d T_camera_world = keyframe.T_world_camera.inverse();
@@ -209,7 +195,7 @@ class ModelReader {
 
 void write_colmap_model(const fs::path& folder, const Camera& camera, const PointMap& map) {
   const std::vector<Track> tracks = find_tracks(camera, map);
-  write_file(folder / "cameras.txt", "# CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]\n" + camera_line(camera));
+  write_file(folder / "cameras.txt", format_colmap_cameras(std::span(&camera, 1)));
   AtomicFile images(folder / "images.txt");
   images.write("# IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME (camera from world)\n# POINTS2D[] as X Y POINT3D_ID\n");
   for (std::size_t k = 0; k < map.keyframes.size(); ++k) images.write(image_lines(map.keyframes[k], k + 1));

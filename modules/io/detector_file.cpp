@@ -10,24 +10,10 @@
 
 #include "io/atomic_file.h"
 #include "io/camera_records.h"
+#include "io/pose_yaml.h"
 
 namespace alidade {
 namespace {
-
-std::string format_pose(const Eigen::Isometry3d& T) {
-  const Eigen::Quaterniond q(T.linear());
-  const Eigen::Vector3d t = T.translation();
-  return fmt::format("{{translation_m: [{}, {}, {}], quaternion_wxyz: [{}, {}, {}, {}]}}", t.x(), t.y(), t.z(), q.w(),
-                     q.x(), q.y(), q.z());
-}
-
-std::string format_covariance(const Matrix6d& C) {
-  std::vector<double> triangle;
-  for (int i = 0; i < 6; ++i) {
-    for (int j = i; j < 6; ++j) triangle.push_back(C(i, j));
-  }
-  return fmt::format("[{}]", fmt::join(triangle, ", "));
-}
 
 std::string format_terms(const SweepTerms& t) {
   return fmt::format("{{phase: {}, tilt: {}, curve: {}, gibmag: {}, gibphase: {}, ogeemag: {}, ogeephase: {}}}",

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <set>
 
-#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
 #include "core/errors.h"
 #include "core/nearest_name.h"
 #include "io/camera_yaml.h"
 #include "io/detector_file.h"
+#include "io/pose_yaml.h"
 #include "io/text_lines.h"
 #include "io/yaml_nodes.h"
 
@@ -26,39 +25,6 @@ struct Station {
   Eigen::Isometry3d T_world_station = Eigen::Isometry3d::Identity();
 };
 
-Eigen::Isometry3d read_pose(const Path& path, const YAML::Node& node) {
-  require_yaml_map(path, node, "{translation_m: [0, 0, 0], quaternion_wxyz: [1, 0, 0, 0]}");
-  constexpr std::array<std::string_view, 2> kKeys{"translation_m", "quaternion_wxyz"};
-  refuse_unknown_keys(path, node, kKeys);
-  const auto t = yaml_numbers(path, yaml_value(path, node, "translation_m", "the pose"), 3, "[0, 0, 1.5]");
-  const YAML::Node rotation = yaml_value(path, node, "quaternion_wxyz", "the pose");
-  const auto w = yaml_numbers(path, rotation, 4, "[1, 0, 0, 0]");
-  const Eigen::Quaterniond q(w[0], w[1], w[2], w[3]);
-  if (!(std::abs(q.norm() - 1.0) < 1e-3)) {
-    throw InputError(path, yaml_line(rotation), fmt::format("the quaternion's length must be 1, got {:.6g}", q.norm()),
-                     "its order is w, x, y, z");
-  }
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.linear() = q.normalized().toRotationMatrix();
-  T.translation() = Eigen::Vector3d(t[0], t[1], t[2]);
-  return T;
-}
-
-Matrix6d read_covariance(const Path& path, const YAML::Node& node) {
-  const auto values = yaml_numbers(path, node, 21, "the upper triangle of the 6x6 matrix, row by row");
-  Matrix6d C;
-  std::size_t next = 0;
-  for (int i = 0; i < 6; ++i) {
-    for (int j = i; j < 6; ++j) C(i, j) = C(j, i) = values[next++];
-  }
-  const Eigen::VectorXd variances = Eigen::SelfAdjointEigenSolver<Matrix6d>(C).eigenvalues();
-  if (!(variances.minCoeff() >= -1e-9 * std::abs(variances.maxCoeff()))) {
-    throw InputError(path, yaml_line(node), "the covariance is not positive semi-definite",
-                     "calibrate the detectors again, or leave it out");
-  }
-  return C;
-}
-
 Station read_station(const Path& path, const YAML::Node& node, DetectorRig& rig) {
   require_yaml_map(path, node, "{name: north, T_world_station: {translation_m: [...], quaternion_wxyz: [...]}}");
   constexpr std::array<std::string_view, 3> kKeys{"name", "T_world_station", "covariance"};
@@ -67,7 +33,7 @@ Station read_station(const Path& path, const YAML::Node& node, DetectorRig& rig)
   station.name = yaml_text(path, yaml_value(path, node, "name", "the station"));
   station.T_world_station = read_pose(path, yaml_value(path, node, "T_world_station", "the station"));
   if (const YAML::Node covariance = node["covariance"]) {
-    rig.station_covariance[station.name] = read_covariance(path, covariance);
+    rig.station_covariance[station.name] = read_covariance(path, covariance, 6);
   }
   return station;
 }

@@ -14,6 +14,16 @@ namespace alidade {
 
 using Path = std::filesystem::path;
 
+namespace {
+
+void append_numbers(const Path& path, const YAML::Node& node, std::vector<double>& numbers) {
+  if (node.IsMap() && node["data"]) return append_numbers(path, node["data"], numbers);
+  if (!node.IsSequence()) return numbers.push_back(yaml_number(path, node));
+  for (const YAML::Node& item : node) append_numbers(path, item, numbers);
+}
+
+}  // namespace
+
 YAML::Node load_yaml(const Path& path, const std::string& text) {
   try {
     return YAML::Load(text);
@@ -47,6 +57,12 @@ std::vector<double> yaml_numbers(const Path& path, const YAML::Node& node, std::
   }
   std::vector<double> numbers;
   for (const YAML::Node& item : node) numbers.push_back(yaml_number(path, item));
+  return numbers;
+}
+
+std::vector<double> yaml_all_numbers(const Path& path, const YAML::Node& node) {
+  std::vector<double> numbers;
+  if (!node.IsNull()) append_numbers(path, node, numbers);
   return numbers;
 }
 

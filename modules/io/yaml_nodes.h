@@ -29,6 +29,9 @@ int yaml_integer(const std::filesystem::path& path, const YAML::Node& node);
 std::vector<double> yaml_numbers(const std::filesystem::path& path, const YAML::Node& node, std::size_t count,
                                  const char* example);
 
+/// All numbers in a scalar, a list, a list of lists, or the `data` of a matrix, in order; none of a null.
+std::vector<double> yaml_all_numbers(const std::filesystem::path& path, const YAML::Node& node);
+
 /// A word or text that is not empty.
 std::string yaml_text(const std::filesystem::path& path, const YAML::Node& node);
 

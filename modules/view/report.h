@@ -18,7 +18,7 @@ struct ReportRow {
   std::string value;  ///< as printed: "3.21"
   std::string unit;   ///< "cm", or empty
   Verdict verdict = Verdict::None;
-  std::string remark;  ///< one sentence beside it, or empty
+  std::string remark{};  ///< one sentence beside it, or empty
 };
 
 enum class FigureFormat { Png, Jpeg };  ///< plots and drawings; photographs

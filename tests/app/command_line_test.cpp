@@ -29,7 +29,8 @@ std::vector<Verb> verbs() {
   const auto make = &make_command<TrackCamera>;
   return {{"track camera", "tracks", "alidade track camera a.mp4 -o out", OutputUse::Required, make},
           {"track body", "tracks", "alidade track body a.csv -o out", OutputUse::Required, make},
-          {"evaluate", "compares", "alidade evaluate a.tum", OutputUse::Optional, make}};
+          {"evaluate", "compares", "alidade evaluate a.tum", OutputUse::Optional, make},
+          {"convert", "converts", "alidade convert a.yaml -o b.yaml", OutputUse::File, make}};
 }
 
 std::optional<Request> parse(CommandLine& line, std::vector<const char*> words) {
@@ -45,6 +46,13 @@ std::string message_of(const std::vector<const char*>& words) {
     return error.what();
   }
   return "";
+}
+
+TEST(CommandLine, KnowsWhetherTheOutputIsAFile) {
+  CommandLine directory(verbs()), file(verbs());
+  EXPECT_EQ(parse(directory, {"evaluate", "a.tum", "-o", "out"})->output, OutputUse::Optional);
+  EXPECT_EQ(parse(file, {"convert", "a.yaml", "-o", "b.yaml"})->output, OutputUse::File);
+  EXPECT_NE(message_of({"convert", "a.yaml"}).find("--output is required"), std::string::npos);
 }
 
 TEST(CommandLine, FindsTheVerbAndItsFlags) {
@@ -90,7 +98,7 @@ TEST(CommandLine, NamesTheNearestVerbAndFlag) {
 }
 
 TEST(CommandLine, SaysWhatIsMissing) {
-  EXPECT_EQ(message_of({}), "alidade: a verb is missing; one of: track, evaluate");
+  EXPECT_EQ(message_of({}), "alidade: a verb is missing; one of: track, evaluate, convert");
   EXPECT_EQ(message_of({"track"}), "alidade track: a verb is missing; one of: camera, body");
   EXPECT_THAT(message_of({"track", "camera", "-o", "out"}), testing::HasSubstr("SOURCE is required"));
   EXPECT_THAT(message_of({"track", "camera", "a.mp4"}), testing::HasSubstr("--output is required"));

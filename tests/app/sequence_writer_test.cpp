@@ -18,7 +18,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-const Camera kCamera{64, 48, 50, 51, 31.5, 23.5, {-0.1, 0, 0, 0, 0}};
+const Camera kCamera{64, 48, 50, 51, 31.5, 23.5, BrownConrady{-0.1}};
 
 StampedPose pose_at_frame(int i) {
   StampedPose pose;

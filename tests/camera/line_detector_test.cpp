@@ -15,7 +15,7 @@ namespace alidade {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-const Camera kCamera{640, 480, 517.3, 516.5, 318.6, 255.3, {0.2624, -0.9531, -0.0054, 0.0026, 1.1633}};
+const Camera kCamera{640, 480, 517.3, 516.5, 318.6, 255.3, BrownConrady{0.2624, -0.9531, -0.0054, 0.0026, 1.1633}};
 const SweepTerms kTerms{0.018, -0.048, 0.0044, 0.0169, 1.705, 0.0, 0.0};
 const SweepTerms kFullTerms{-0.0063, 0.0474, 0.193, -0.0054, 2.25, 0.172, 2.64};
 

@@ -7,7 +7,7 @@ namespace alidade {
 namespace {
 
 Camera rolling_camera() {
-  Camera camera{640, 480, 520, 515, 320, 240, {0.2, -0.5, 0.001, -0.002, 0}};
+  Camera camera{640, 480, 520, 515, 320, 240, BrownConrady{0.2, -0.5, 0.001, -0.002, 0}};
   camera.readout_s = 0.02;
   return camera;
 }

@@ -124,6 +124,13 @@ TEST_F(FileSources, NameWhatIsNotThere) {
   EXPECT_EQ(message("empty"), "empty: holds no images; name a folder with .jpg or .png files");
 }
 
+TEST_F(FileSources, AreVideosWhereTheyAreNoImagesListsOrFolders) {
+  add_image("1.png", 1);
+  for (const char* name : {"a.mp4", "b.csv", "c.txt"}) folder_.write(name, "");
+  EXPECT_TRUE(is_video_name(folder_ / "a.mp4"));
+  for (const char* name : {"1.png", "b.csv", "c.txt", "none.mp4", "."}) EXPECT_FALSE(is_video_name(folder_ / name));
+}
+
 TEST_F(FileSources, NameTheImageOfAnotherSize) {
   add_image("1.png", 1);
   add_image("2.png", 2, {16, 12});

@@ -26,7 +26,8 @@ class CameraFile : public testing::Test {
 
 TEST_F(CameraFile, GivesBackExactlyWhatWasWritten) {
   const Camera plain{640, 480, 500.1, 501.2, 1.0 / 3.0, 239.5, {}};
-  const Camera bent{1536, 1024, 1379.74, 1382.08, 760.095, 503.155, {0.1 + 0.2, -0.9531, -0.0054, 1e-17, 1.1633}};
+  const Camera bent{
+      1536, 1024, 1379.74, 1382.08, 760.095, 503.155, BrownConrady{0.1 + 0.2, -0.9531, -0.0054, 1e-17, 1.1633}};
   Camera rolling = bent;
   rolling.readout_s = 0.0173;
   for (const Camera& camera : {plain, bent, rolling}) {
@@ -76,7 +77,7 @@ TEST_F(CameraFile, NamesWhatIsWrongInOurYaml) {
   EXPECT_EQ(message("c.yaml", "camera:\n  model: [pinhole\n  x\n"),
             "c.yaml:4: damaged YAML: end of sequence flow not found; correct the line or write the file again");
   EXPECT_EQ(message("c.yaml", "colour: red\n"),
-            "c.yaml: holds no camera; a key 'camera', 'cameras' or 'camera_matrix' is wanted");
+            "c.yaml: holds no camera; a key 'camera', 'cameras', 'cam0' or 'camera_matrix' is wanted");
 }
 
 constexpr const char* kOpenCvYaml =
@@ -86,7 +87,7 @@ constexpr const char* kOpenCvYaml =
     ".25 ]\n";
 
 TEST_F(CameraFile, ReadsOpenCvsYaml) {
-  const Camera expected{640, 480, 536, 537, 342, 235.5, {-0.26, -0.03, 1e-3, 2e-3, 0.25}};
+  const Camera expected{640, 480, 536, 537, 342, 235.5, BrownConrady{-0.26, -0.03, 1e-3, 2e-3, 0.25}};
   EXPECT_EQ(read("c.yml", kOpenCvYaml), expected);
   EXPECT_EQ(read("no_extension", kOpenCvYaml), expected);
   EXPECT_EQ(read("ros.yaml",
@@ -129,7 +130,8 @@ constexpr const char* kOpenCvXml =
     "  <data>-0.26 -0.03 1e-3 2e-3 .25</data></distortion_coefficients>\n</opencv_storage>\n";
 
 TEST_F(CameraFile, ReadsOpenCvsXml) {
-  EXPECT_EQ(read("c.xml", kOpenCvXml), (Camera{640, 480, 536, 537, 342, 235.5, {-0.26, -0.03, 1e-3, 2e-3, 0.25}}));
+  EXPECT_EQ(read("c.xml", kOpenCvXml),
+            (Camera{640, 480, 536, 537, 342, 235.5, BrownConrady{-0.26, -0.03, 1e-3, 2e-3, 0.25}}));
 }
 
 TEST_F(CameraFile, NamesTheDamageInOpenCvsXml) {
@@ -156,14 +158,16 @@ TEST_F(CameraFile, ShiftsColmapsPixelOrigin) {
   EXPECT_EQ(read("cameras.txt", head + "1 PINHOLE 640 480 500 510 320 240\n"),
             (Camera{640, 480, 500, 510, 319.5, 239.5, {}}));
   EXPECT_EQ(read("cameras.txt", "7 SIMPLE_RADIAL 640 480 500 320 240 0.1\n"),
-            (Camera{640, 480, 500, 500, 319.5, 239.5, {0.1, 0, 0, 0, 0}}));
+            (Camera{640, 480, 500, 500, 319.5, 239.5, BrownConrady{0.1, 0, 0, 0, 0}}));
   EXPECT_EQ(read("cameras.txt", "7 RADIAL 640 480 500 320 240 0.1 0.2\n"),
-            (Camera{640, 480, 500, 500, 319.5, 239.5, {0.1, 0.2, 0, 0, 0}}));
+            (Camera{640, 480, 500, 500, 319.5, 239.5, BrownConrady{0.1, 0.2, 0, 0, 0}}));
   EXPECT_EQ(read("cameras.txt", "7 OPENCV 640 480 500 510 320 240 0.1 0.2 0.3 0.4\n"),
-            (Camera{640, 480, 500, 510, 319.5, 239.5, {0.1, 0.2, 0.3, 0.4, 0}}));
-  EXPECT_EQ(message("cameras.txt", head + "1 OPENCV_FISHEYE 640 480 500 510 320 240 0 0 0 0\n"),
-            "cameras.txt:2: COLMAP's camera model 'OPENCV_FISHEYE' is not supported; supported are SIMPLE_PINHOLE, "
-            "PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV");
+            (Camera{640, 480, 500, 510, 319.5, 239.5, BrownConrady{0.1, 0.2, 0.3, 0.4, 0}}));
+  EXPECT_EQ(read("cameras.txt", head + "1 OPENCV_FISHEYE 640 480 500 510 320 240 0.1 0 0 0\n"),
+            (Camera{640, 480, 500, 510, 319.5, 239.5, Fisheye{0.1, 0, 0, 0}}));
+  EXPECT_EQ(message("cameras.txt", head + "1 FOV 640 480 500 510 320 240 0.9\n"),
+            "cameras.txt:2: COLMAP's camera model 'FOV' is not supported; supported are SIMPLE_PINHOLE, PINHOLE, "
+            "SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV, OPENCV_FISHEYE");
   EXPECT_EQ(message("cameras.txt", "1 PINHOLE 640 480 500 510 320\n"),
             "cameras.txt:1: PINHOLE has 4 parameters, got 3");
 }
@@ -171,7 +175,7 @@ TEST_F(CameraFile, ShiftsColmapsPixelOrigin) {
 TEST_F(CameraFile, ReadsPairsOfNamesAndValues) {
   EXPECT_EQ(
       read("camera.txt", "# colour\nfx 517 fy 516 cx 318 cy 255\nk1 0.2 k2 -0.9 p1 -0.005 p2 0.002 k3 1.1\n", kSize),
-      (Camera{640, 480, 517, 516, 318, 255, {0.2, -0.9, -0.005, 0.002, 1.1}}));
+      (Camera{640, 480, 517, 516, 318, 255, BrownConrady{0.2, -0.9, -0.005, 0.002, 1.1}}));
   EXPECT_EQ(read("camera.txt", "fx 5 fy 5 cx 3 cy 2 width 8 height 6\n", kSize), (Camera{8, 6, 5, 5, 3, 2, {}}));
   EXPECT_EQ(message("camera.txt", "fx 517 fy 516 cx 318\n", kSize), "camera.txt: the camera has no 'cy'");
   EXPECT_EQ(message("camera.txt", "fx 517 fy 516\ncx 318 cy\n", kSize),
@@ -220,7 +224,7 @@ TEST(RealCameraFiles, AreRead) {
   EXPECT_EQ(read_camera(data / "fountain/0000.jpg.camera"),
             (Camera{1536, 1024, 1379.74, 1382.08, 760.095, 503.155, {}}));
   EXPECT_EQ(read_camera(data / "seven-scenes/camera.txt", kSize),
-            (Camera{640, 480, 518.8, 518.8, 320, 240, {-0.0308, 0, 0, 0, 0}}));
+            (Camera{640, 480, 518.8, 518.8, 320, 240, BrownConrady{-0.0308, 0, 0, 0, 0}}));
   EXPECT_EQ(read_camera(data / "seven-scenes/camera-intrinsics.txt", kSize),
             (Camera{640, 480, 585, 585, 320, 240, {}}));
   EXPECT_EQ(std::get<BrownConrady>(read_camera(data / "tum-fr1-rpy/camera.txt", kSize).distortion).k3, 1.1633);

@@ -14,7 +14,7 @@
 namespace alidade {
 namespace {
 
-const Camera kCamera{640, 480, 500, 510, 319.5, 239.5, {0.1, -0.02, 0.001, 0.002, 0}};
+const Camera kCamera{640, 480, 500, 510, 319.5, 239.5, BrownConrady{0.1, -0.02, 0.001, 0.002, 0}};
 
 // Three keyframes look at a grid of points, one of which nobody sees; the last keyframe sees nothing.
 PointMap some_map() {

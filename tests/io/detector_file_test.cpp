@@ -10,7 +10,7 @@
 namespace alidade {
 namespace {
 
-const Camera kCamera{640, 480, 517.3, 516.5, 318.6, 255.3, {0.2624, -0.9531, -0.0054, 0.0026, 1.1633}};
+const Camera kCamera{640, 480, 517.3, 516.5, 318.6, 255.3, BrownConrady{0.2624, -0.9531, -0.0054, 0.0026, 1.1633}};
 
 class DetectorFile : public testing::Test {
  protected:
@@ -124,7 +124,7 @@ TEST_F(DetectorFile, NamesWhatIsWrongWithAStation) {
   EXPECT_EQ(message(kStations + "    covariance: [1, 2]\n" + detectors),
             "rig.yaml:4: a list of 21 numbers is wanted here; e.g. the upper triangle of the 6x6 matrix, row by row");
   EXPECT_EQ(message(kStations + "    covariance: [-1, 0,0,0,0,0,0, 0,0,0,0,0,0, 0,0,0,0,0,0, 0,0]\n" + detectors),
-            "rig.yaml:4: the covariance is not positive semi-definite; calibrate the detectors again, or leave it out");
+            "rig.yaml:4: the covariance is not positive semi-definite; calibrate again, or leave it out");
   EXPECT_EQ(message(detectors), "rig.yaml:1: the rig has no 'stations'");
   EXPECT_EQ(message(kStations), "rig.yaml:1: the rig has no 'detectors'");
   EXPECT_EQ(message(kStations + "detectors: []\n"), "rig.yaml:4: a list of detectors is wanted");
