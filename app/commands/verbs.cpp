@@ -6,6 +6,7 @@ namespace alidade {
 std::vector<Verb> all_verbs() {
   return {track_camera_verb(),
           track_body_verb(),
+          calibrate_board_verb(),
           calibrate_camera_verb(),
           calibrate_stereo_verb(),
           calibrate_rig_verb(),
@@ -15,6 +16,7 @@ std::vector<Verb> all_verbs() {
           convert_verb(),
           simulate_camera_verb(),
           simulate_body_verb(),
+          simulate_board_verb(),
           experiment_camera_verb(),
           experiment_body_verb(),
           evaluate_verb(),

@@ -13,6 +13,7 @@ std::vector<Verb> all_verbs();
 
 Verb track_camera_verb();
 Verb track_body_verb();
+Verb calibrate_board_verb();
 Verb calibrate_camera_verb();
 Verb calibrate_stereo_verb();
 Verb calibrate_rig_verb();
@@ -22,6 +23,7 @@ Verb undistort_verb();
 Verb convert_verb();
 Verb simulate_camera_verb();
 Verb simulate_body_verb();
+Verb simulate_board_verb();
 Verb experiment_camera_verb();
 Verb experiment_body_verb();
 Verb evaluate_verb();

@@ -229,7 +229,7 @@ BundleEquations bundle_equations(const BoardBundle& bundle, const BoardShape& sh
   }
   if (layout.corners) {
     const Eigen::Index at = layout.corners_at, size = layout.size - layout.corners_at;
-    const Eigen::VectorXd moved = rigid_part(bundle, shape);
+    const Eigen::VectorXd moved = rigid_part(bundle.warp, shape);
     const double information = rigid_information(shape);
     e.H.block(at, at, size, size) += information * shape.rigid_modes * shape.rigid_modes.transpose();
     e.g.tail(size) += information * shape.rigid_modes * moved;
@@ -264,7 +264,7 @@ double bundle_cost(const BoardBundle& bundle, const BoardShape& shape, std::span
   for (const BundlePrior& prior : bundle_priors(bundle, shape, freedom)) {
     cost += prior.information * prior.value * prior.value;
   }
-  if (freedom.corners) cost += rigid_information(shape) * rigid_part(bundle, shape).squaredNorm();
+  if (freedom.corners) cost += rigid_information(shape) * rigid_part(bundle.warp, shape).squaredNorm();
   return cost;
 }
 

@@ -67,7 +67,7 @@ struct BundleFreedom {
   std::vector<std::vector<int>> intrinsics;
   bool camera_poses = true;  ///< of all cameras but the first
   bool warp = true;
-  bool corners = false;               ///< every corner's place, beside the bulge
+  bool corners = false;               ///< every corner's place, instead of the warp
   double warp_sigma_share = 0.005;    ///< boards are flat to this share of their diagonal: holds what nothing else does
   double corner_sigma_share = 0.002;  ///< along the board corners lie where they should to this share of it
 };

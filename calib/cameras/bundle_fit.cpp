@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/cameras/bundle_priors.h"
+
 namespace alidade {
 namespace {
 
@@ -48,9 +50,10 @@ bool weigh(const std::vector<std::vector<double>>& lengths, Weighting weighting,
   bool has_changed = false;
   for (std::size_t v = 0; v < fit.views.size(); ++v) {
     const double scale = std::clamp(fit.view_scale[v], fit.scale, options.view_scale_limit * fit.scale);
+    const double trust = options.weigh_views ? std::pow(fit.scale / std::max(scale, 1e-9), 2) : 1.0;
     for (std::size_t i = 0; i < lengths[v].size(); ++i) {
       const double sigmas = lengths[v][i] / std::max(scale, 1e-9);
-      double weight = sigmas <= options.outlier_sigmas ? 1.0 : 0.0;
+      double weight = sigmas <= options.outlier_sigmas ? trust : 0.0;
       if (weighting == Weighting::Fading) weight = 1.0 / std::pow(1.0 + 0.1 * sigmas * sigmas, 2);  // Geman, McClure
       has_changed |= (weight > 0) != (fit.views[v].weights[i] > 0);
       fit.views[v].weights[i] = weight;
@@ -59,13 +62,30 @@ bool weigh(const std::vector<std::vector<double>>& lengths, Weighting weighting,
   return has_changed;
 }
 
+// Least squares would never come back from a whole view of another moment: views that are far off at the start wait
+// until the others are solved.
+void hold_back_far_views(const BoardShape& shape, const BundleFitOptions& options, BundleFit& fit) {
+  measure_scales(residual_sigmas(fit.bundle, shape, fit.views), fit);
+  for (std::size_t v = 0; v < fit.views.size(); ++v) {
+    if (fit.view_scale[v] <= options.view_scale_limit * fit.scale) continue;
+    std::fill(fit.views[v].weights.begin(), fit.views[v].weights.end(), 0.0);
+  }
+}
+
 }  // namespace
+
+BundleView bundle_view(int camera, int frame, std::vector<BoardCorner> corners, const BundleFitOptions& options) {
+  for (BoardCorner& corner : corners) corner.sigma_px = std::hypot(corner.sigma_px, options.least_sigma_px);
+  std::vector<double> weights(corners.size(), 1.0);
+  return {camera, frame, std::move(corners), std::move(weights)};
+}
 
 BundleFit fit_bundle(const BoardBundle& start, const BoardShape& shape, std::vector<BundleView> views,
                      const BundleFreedom& freedom, const BundleFitOptions& options) {
   BundleFit fit;
   fit.bundle = start;
   fit.views = std::move(views);
+  hold_back_far_views(shape, options, fit);
   constexpr int kFadingRounds = 2;
   for (int round = 0; round < options.most_rounds; ++round) {
     const bool is_first = round == 0;
@@ -83,10 +103,27 @@ BundleFit fit_bundle(const BoardBundle& start, const BoardShape& shape, std::vec
   return fit;
 }
 
+namespace {
+
+// The same bulge as offsets of the corners, the whole board where it should be.
+BoardWarp as_offsets(const BoardWarp& warp, const BoardShape& shape) {
+  BoardWarp offsets;
+  for (std::size_t i = 0; i < shape.corners_m.size(); ++i) {
+    offsets.offsets_m.push_back(shape.corner(static_cast<int>(i), warp) - shape.corners_m[i]);
+  }
+  const Eigen::VectorXd moved = shape.rigid_modes * rigid_part(offsets, shape);
+  for (std::size_t i = 0; i < offsets.offsets_m.size(); ++i) {
+    offsets.offsets_m[i] -= moved.segment<3>(3 * static_cast<Eigen::Index>(i));
+  }
+  return offsets;
+}
+
+}  // namespace
+
 BundleFit fit_corners(const BundleFit& fit, const BoardShape& shape, const BundleFreedom& freedom,
                       const BundleFitOptions& options) {
   BoardBundle start = fit.bundle;
-  start.warp.offsets_m.assign(shape.corners_m.size(), Eigen::Vector3d::Zero());
+  start.warp = as_offsets(start.warp, shape);
   return fit_bundle(start, shape, fit.views, freedom, options);
 }
 

@@ -9,10 +9,15 @@
 namespace alidade {
 
 struct BundleFitOptions {
+  double least_sigma_px = 0.1;    ///< added to the corners' own: print and light err where the image shows no noise
   double outlier_sigmas = 4.0;    ///< a corner beyond it is cut: one in 3000 of a normal distribution in the plane
   double view_scale_limit = 3.0;  ///< a view's own scatter counts up to this many times that of all
+  bool weigh_views = true;        ///< a view that scatters more than the middle one counts less, by its variance
   int most_rounds = 8;
 };
+
+/// A view with every corner trusted alike, none better than options.least_sigma_px.
+BundleView bundle_view(int camera, int frame, std::vector<BoardCorner> corners, const BundleFitOptions& options);
 
 /// A bundle with the corners that it goes by.
 struct BundleFit {

@@ -47,10 +47,10 @@ std::vector<BundlePrior> bundle_priors(const BoardBundle& bundle, const BoardSha
   return priors;
 }
 
-Eigen::VectorXd rigid_part(const BoardBundle& bundle, const BoardShape& shape) {
+Eigen::VectorXd rigid_part(const BoardWarp& warp, const BoardShape& shape) {
   Eigen::VectorXd moved = Eigen::VectorXd::Zero(7);
-  for (std::size_t i = 0; i < bundle.warp.offsets_m.size(); ++i) {
-    moved += shape.rigid_modes.middleRows<3>(3 * static_cast<Eigen::Index>(i)).transpose() * bundle.warp.offsets_m[i];
+  for (std::size_t i = 0; i < warp.offsets_m.size(); ++i) {
+    moved += shape.rigid_modes.middleRows<3>(3 * static_cast<Eigen::Index>(i)).transpose() * warp.offsets_m[i];
   }
   return moved;
 }

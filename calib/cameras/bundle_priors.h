@@ -20,7 +20,7 @@ std::vector<BundlePrior> bundle_priors(const BoardBundle& bundle, const BoardSha
                                        const BundleFreedom& freedom);
 
 /// How much the corners' offsets move, turn and scale the whole board, in shape.rigid_modes.
-Eigen::VectorXd rigid_part(const BoardBundle& bundle, const BoardShape& shape);
+Eigen::VectorXd rigid_part(const BoardWarp& warp, const BoardShape& shape);
 
 /// That they do not, as information of each mode (1/m²): the board's poses say where it is, and its stated size is true
 /// of all corners together.

@@ -18,18 +18,27 @@ namespace {
 using Outcome = CameraCalibrationOutcome;
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-std::vector<BundleView> to_bundle_views(std::span<const BoardView> views) {
+std::vector<BundleView> to_bundle_views(std::span<const BoardView> views, const BundleFitOptions& options) {
   std::vector<BundleView> bundle;
-  for (const BoardView& view : views) {
-    bundle.push_back({0, 0, view.corners, std::vector<double>(view.corners.size(), 1.0)});
-  }
+  for (const BoardView& view : views) bundle.push_back(bundle_view(0, 0, view.corners, options));
   return bundle;
+}
+
+void require_corners_of(const BoardShape& shape, std::span<const BoardView> views) {
+  const int count = static_cast<int>(shape.corners_m.size());
+  for (const BoardView& view : views) {
+    for (const BoardCorner& corner : view.corners) {
+      if (corner.id >= 0 && corner.id < count) continue;
+      throw std::invalid_argument(
+          fmt::format("{}: the board has corners 0 to {}, not {}", view.name, count - 1, corner.id));
+    }
+  }
 }
 
 // The views that show something new, their frames numbered; fills in what becomes of the others.
 std::vector<BundleView> distinct_views(std::span<const BoardView> views, const CameraCalibrationOptions& options,
                                        CameraCalibration& calibration) {
-  const std::vector<BundleView> all = to_bundle_views(views);
+  const std::vector<BundleView> all = to_bundle_views(views, options.fit);
   const std::vector<int> earlier = find_repeated_views(all, options.repeated_view_px);
   std::vector<BundleView> distinct;
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -95,18 +104,22 @@ void judge_views(const BoardShape& shape, CameraCalibration& calibration) {
   }
 }
 
-int used_corners(const BundleFit& fit) {
+int used_corners(const std::vector<BundleView>& views) {
   int count = 0;
-  for (const BundleView& view : fit.views) {
+  for (const BundleView& view : views) {
     count += static_cast<int>(std::count_if(view.weights.begin(), view.weights.end(), [](double w) { return w > 0; }));
   }
   return count;
 }
 
+// Two coordinates of each corner for one parameter, the warp's two and six of every view among them.
+bool has_corners_for(LensModel lens, const std::vector<BundleView>& views) {
+  const std::size_t parameters = free_intrinsics(lens).size() + 2 + 6 * views.size();
+  return used_corners(views) >= static_cast<int>(parameters);
+}
+
 Outcome judge(const CameraCalibration& calibration, const CameraCalibrationOptions& options, bool has_covariance) {
-  const int parameters =
-      static_cast<int>(calibration.freedom.intrinsics.front().size()) + 2 + 6 * calibration.distinct_views;
-  if (2 * used_corners(calibration.fit) < 2 * parameters) return Outcome::TooFewCorners;
+  if (!has_corners_for(calibration.model.lens, calibration.fit.views)) return Outcome::TooFewCorners;
   if (calibration.tilt_spread_rad < options.least_tilt_deg * kDegree) return Outcome::NoTilt;
   if (!has_covariance || find_fault(calibration.camera)) return Outcome::Undetermined;
   const BundleLayout layout(calibration.fit.bundle, calibration.freedom);
@@ -147,12 +160,16 @@ CameraCalibration calibrate_camera(const ImageExtent& image, const Board& board,
                                    const std::stop_token& stop) {
   validate(options);
   const BoardShape shape = shape_of(board);
+  require_corners_of(shape, views);
   CameraCalibration calibration;
   const std::vector<BundleView> distinct = distinct_views(views, options, calibration);
   calibration.outcome = Outcome::TooFewViews;
   if (distinct.size() < 3) return calibration;
-  std::vector<Tried> tried;
   const auto models = models_to_try(options);
+  calibration.fit.views = distinct;
+  calibration.outcome = Outcome::TooFewCorners;
+  if (!has_corners_for(models.front().lens, distinct)) return calibration;
+  std::vector<Tried> tried;
   for (std::size_t i = 0; i < models.size(); ++i) {
     if (stop.stop_requested()) {
       calibration.outcome = Outcome::Stopped;
@@ -186,14 +203,14 @@ std::string explain(const CameraCalibration& c) {
             given, given == 1 ? "" : "s");
       }
       return fmt::format(
-          "the board is seen in {} images, but only {} of them differ; move and tilt the board between "
+          "the board is seen in {} images, but only {} of them differ{}; move and tilt the board between "
           "images",
-          given, c.distinct_views);
+          given, c.distinct_views, c.distinct_views == 1 ? "s" : "");
     case Outcome::TooFewCorners:
       return fmt::format(
           "{} corners in {} images do not suffice for the lens; take more images, or choose a lens of "
           "fewer parameters (--lens radial)",
-          used_corners(c.fit), c.distinct_views);
+          used_corners(c.fit.views), c.distinct_views);
     case Outcome::NoTilt:
       return fmt::format(
           "the board faces the camera alike in all {} images (within {:.1f} deg), so that focal length "

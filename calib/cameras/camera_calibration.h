@@ -78,7 +78,7 @@ CameraCalibration calibrate_camera(const ImageExtent& image, const Board& board,
 /// Why there is no result and what to do, in a sentence; for Calibrated empty.
 std::string explain(const CameraCalibration& calibration);
 
-/// Whether what the lens leaves is more than noise: a systematic part above a third of it.
+/// Whether what the lens leaves is hardly more than noise: a systematic part of at most a third of it.
 bool lens_fits(const ResidualField& field);
 
 }  // namespace alidade

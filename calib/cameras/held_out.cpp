@@ -37,6 +37,7 @@ BundleFreedom CameraModel::freedom() const {
   BundleFreedom freedom;
   freedom.intrinsics = {free_intrinsics(lens)};
   freedom.corners = free_corners;
+  freedom.warp = !free_corners;  // which the corners express, too
   return freedom;
 }
 

@@ -23,9 +23,10 @@ double processor_time_s() {
 std::vector<PlacedBoard> placed_boards(const RigCameraViews& camera, const CameraCalibration& alone) {
   std::vector<PlacedBoard> boards;
   for (std::size_t i = 0; i < camera.views.size(); ++i) {
-    int index = alone.frame_of_view[i];
-    if (index < 0) index = alone.frame_of_view[static_cast<std::size_t>(alone.verdicts[i].repeats)];
-    if (alone.verdicts[i].use == ViewUse::Rejected) continue;
+    const int repeats = alone.verdicts[i].repeats;
+    const std::size_t placed = repeats < 0 ? i : static_cast<std::size_t>(repeats);
+    if (alone.verdicts[placed].use == ViewUse::Rejected) continue;
+    const int index = alone.frame_of_view[placed];
     boards.push_back({camera.views[i].frame, alone.fit.bundle.T_rig_board[static_cast<std::size_t>(index)],
                       static_cast<int>(camera.views[i].corners.size())});
   }
@@ -42,7 +43,7 @@ int frame_count(std::span<const RigCameraViews> cameras) {
 
 // Views of the joint fit: those of moments that a camera placed; a repeated view has its own moment and counts.
 std::vector<BundleView> joint_views(std::span<const RigCameraViews> cameras,
-                                    std::span<const std::vector<PlacedBoard>> placed) {
+                                    std::span<const std::vector<PlacedBoard>> placed, const BundleFitOptions& options) {
   std::vector<BundleView> views;
   for (std::size_t c = 0; c < cameras.size(); ++c) {
     for (const BoardView& view : cameras[c].views) {
@@ -50,7 +51,7 @@ std::vector<BundleView> joint_views(std::span<const RigCameraViews> cameras,
         return std::any_of(boards.begin(), boards.end(), [&](const auto& b) { return b.frame == view.frame; });
       });
       if (!is_placed) continue;
-      views.push_back({static_cast<int>(c), view.frame, view.corners, std::vector<double>(view.corners.size(), 1.0)});
+      views.push_back(bundle_view(static_cast<int>(c), view.frame, view.corners, options));
     }
   }
   return views;
@@ -66,9 +67,10 @@ void fit_jointly(const BoardShape& shape, std::span<const RigCameraViews> camera
   }
   start.T_rig_board = place_frames(placed, T_rig_camera, frame_count(cameras));
   const double begin = processor_time_s();
-  rig.fit = fit_bundle(start, shape, joint_views(cameras, placed), rig.freedom, options.fit);
+  rig.fit = fit_bundle(start, shape, joint_views(cameras, placed, options.fit), rig.freedom, options.fit);
   rig.freedom.corners = std::any_of(rig.alone.begin(), rig.alone.end(),
                                     [](const CameraCalibration& alone) { return alone.model.free_corners; });
+  rig.freedom.warp = !rig.freedom.corners;
   if (rig.freedom.corners) rig.fit = fit_corners(rig.fit, shape, rig.freedom, options.fit);
   rig.solve_s = processor_time_s() - begin;
 }
