@@ -43,18 +43,19 @@ const BoardCorner* find_corner(const BoardView& view, int id) {
 
 struct InterpolatedCorner {
   BoardCorner corner;
-  Eigen::Vector2d velocity_px_s = Eigen::Vector2d::Zero();
+  CornerMotion motion;
 };
 
 std::optional<InterpolatedCorner> interpolate(const std::vector<BoardView>& views, const Nodes& nodes, int id,
                                               const CubicWeights& weights) {
-  InterpolatedCorner result{{id, Eigen::Vector2d::Zero(), 0.0}};
+  InterpolatedCorner result{{id, Eigen::Vector2d::Zero(), 0.0}, {}};
   double variance = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     const BoardCorner* corner = find_corner(views[nodes[i]], id);
     if (corner == nullptr) return std::nullopt;
     result.corner.pixel += weights.value[i] * corner->pixel;
-    result.velocity_px_s += weights.slope[i] * corner->pixel;
+    result.motion.velocity_px_s += weights.slope[i] * corner->pixel;
+    result.motion.variance_rate_px2_s += 2.0 * weights.value[i] * weights.slope[i] * std::pow(corner->sigma_px, 2);
     variance += std::pow(weights.value[i] * corner->sigma_px, 2);
   }
   result.corner.sigma_px = std::sqrt(variance);
@@ -125,7 +126,7 @@ std::optional<FilmMoment> BoardFilm::at(double time_s) const {
     if (!between) continue;
     between->corner.sigma_px = std::hypot(between->corner.sigma_px, error_px);
     moment.view.corners.push_back(between->corner);
-    moment.velocity_px_s.push_back(between->velocity_px_s);
+    moment.motion.push_back(between->motion);
   }
   if (moment.view.corners.empty()) return std::nullopt;
   return moment;

@@ -10,11 +10,18 @@
 
 namespace alidade {
 
+/// How an interpolated corner changes with time.
+struct CornerMotion {
+  Eigen::Vector2d velocity_px_s = Eigen::Vector2d::Zero();
+  /// Of the variance of its noise: least midway between two frames, so that noise alone seems to prefer that.
+  double variance_rate_px2_s = 0;
+};
+
 /// What a film shows of the board at a moment between its frames.
 struct FilmMoment {
   BoardView view;  ///< name and frame of the nearest one; the corners' sigma_px includes the interpolation's error
-  std::vector<Eigen::Vector2d> velocity_px_s;  ///< of every corner
-  int first = 0;                               ///< of the four views that it is made of
+  std::vector<CornerMotion> motion;  ///< of every corner
+  int first = 0;                     ///< of the four views that it is made of
 };
 
 /// A film of a moving board in one camera's clock: views in order of their times, some frames may lack.

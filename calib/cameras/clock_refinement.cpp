@@ -14,7 +14,7 @@ namespace {
 using Vector7d = Eigen::Matrix<double, 7, 1>;
 using Matrix7d = Eigen::Matrix<double, 7, 7>;
 using Matrix67d = Eigen::Matrix<double, 6, 7>;
-using Velocities = std::vector<Eigen::Vector2d>;
+using Motions = std::vector<CornerMotion>;
 
 constexpr int kOffset = 6;  // its place behind the second camera's pose
 constexpr std::size_t kFewestMoments = 4;
@@ -28,7 +28,7 @@ BundleFreedom tie_freedom() {
 // A moment of the first film, seen by both cameras.
 struct SharedMoment {
   BundleView first, second;
-  Velocities velocity_px_s;  // of the second one's corners
+  Motions motion;  // of the second one's corners
 };
 
 BundleView weighted_view(int camera, int frame, std::vector<BoardCorner> corners) {
@@ -71,7 +71,7 @@ std::vector<SharedMoment> Joint::moments() const {
     if (!other) continue;
     const int frame = static_cast<int>(i);
     SharedMoment moment{weighted_view(0, frame, view.corners), weighted_view(1, frame, std::move(other->view.corners)),
-                        std::move(other->velocity_px_s)};
+                        std::move(other->motion)};
     take_weights(weights, moment.first);
     take_weights(weights, moment.second);
     moments.push_back(std::move(moment));
@@ -135,19 +135,22 @@ struct TieEquations {
 
 // Views that would leave the velocities as residuals: their gradient is the offset's column of the normal equations,
 // as a residual (found minus seen) grows by the velocity per second of offset.
-BundleView velocity_view(const BoardBundle& bundle, const BoardShape& shape, BundleView view,
-                         const Velocities& velocity_px_s) {
+BundleView velocity_view(const BoardBundle& bundle, const BoardShape& shape, BundleView view, const Motions& motion) {
   const auto residuals = residuals_px(bundle, shape, view);
-  for (std::size_t i = 0; i < residuals.size(); ++i) view.corners[i].pixel += residuals[i] - velocity_px_s[i];
+  for (std::size_t i = 0; i < residuals.size(); ++i) view.corners[i].pixel += residuals[i] - motion[i].velocity_px_s;
   return view;
 }
 
+// Half the derivative of the weighted squares by the offset, in which the weights 1/sigma² change too: velocities come
+// from the same corners as positions, and their common noise would otherwise pull the offset away from frames.
 double slope_by_offset(const BoardBundle& bundle, const BoardShape& shape, const BundleView& view,
-                       const Velocities& velocity_px_s) {
+                       const Motions& motion) {
   const auto residuals = residuals_px(bundle, shape, view);
   double sum = 0;
   for (std::size_t i = 0; i < residuals.size(); ++i) {
-    sum += view.weights[i] * residuals[i].dot(velocity_px_s[i]) / std::pow(view.corners[i].sigma_px, 2);
+    const double variance = view.corners[i].sigma_px * view.corners[i].sigma_px;
+    const double by_noise = 0.5 * motion[i].variance_rate_px2_s * residuals[i].squaredNorm() / variance;
+    sum += view.weights[i] * (residuals[i].dot(motion[i].velocity_px_s) + by_noise) / variance;
   }
   return sum;
 }
@@ -158,7 +161,7 @@ void add_moment(const Joint& joint, SharedMoment moment, TieEquations& equations
   moment.first.frame = moment.second.frame = 0;
   const BoardShape& shape = joint.board.shape;
   const std::vector<BundleView> views{moment.first, moment.second};
-  const std::vector<BundleView> moving{velocity_view(alone, shape, moment.second, moment.velocity_px_s)};
+  const std::vector<BundleView> moving{velocity_view(alone, shape, moment.second, moment.motion)};
   const BundleEquations e = bundle_equations(alone, shape, views, tie_freedom());
   const BundleEquations by_offset = bundle_equations(alone, shape, moving, tie_freedom());
   const Eigen::LLT<Matrix6d> factor(e.H_frame[0]);
@@ -166,7 +169,7 @@ void add_moment(const Joint& joint, SharedMoment moment, TieEquations& equations
   Matrix7d H;
   H << e.H, by_offset.g, by_offset.g.transpose(), by_offset.cost;
   Vector7d g;
-  g << e.g, slope_by_offset(alone, shape, moment.second, moment.velocity_px_s);
+  g << e.g, slope_by_offset(alone, shape, moment.second, moment.motion);
   Matrix67d B;
   B << e.H_frame_shared[0], by_offset.g_frame[0];
   const Matrix67d X = factor.solve(B);
@@ -198,8 +201,10 @@ std::optional<Matrix7d> inverse(const Matrix7d& H) {
 }
 
 // Gauss and Newton's steps of the offset, at each of which the poses are at their best. Whether they came to rest.
+// Where a moment passes a frame, other views make it up and the cost has a kink: steps that turn back get shorter.
 bool descend(Joint& joint, double most_step_s) {
-  constexpr int kMostSteps = 20;
+  constexpr int kMostSteps = 30;
+  double last_s = 0;
   for (int step = 0; step < kMostSteps; ++step) {
     const auto moments = joint.moments();
     if (moments.size() < kFewestMoments) return false;
@@ -208,9 +213,11 @@ bool descend(Joint& joint, double most_step_s) {
     const TieEquations equations = tie_equations(joint, moments);
     const auto C = inverse(equations.H);
     if (!C) return false;
-    const double change_s = -(*C * equations.g)[kOffset];
-    joint.offset_s += std::clamp(change_s, -most_step_s, most_step_s);
-    if (std::abs(change_s) < 0.01 * std::sqrt((*C)(kOffset, kOffset))) return true;
+    const double wanted_s = -(*C * equations.g)[kOffset];
+    if (wanted_s * last_s < 0) most_step_s = std::min(most_step_s, 0.5 * std::abs(last_s));
+    last_s = std::clamp(wanted_s, -most_step_s, most_step_s);
+    joint.offset_s += last_s;
+    if (std::abs(last_s) < 0.01 * std::sqrt((*C)(kOffset, kOffset))) return true;
   }
   return false;
 }

@@ -32,8 +32,19 @@ TEST(BoardFilm, FollowsACubicWithItsVelocity) {
     ASSERT_EQ(moment->view.corners.size(), 2U);
     EXPECT_EQ(moment->view.corners[1].id, 8);
     EXPECT_NEAR((moment->view.corners[0].pixel - cubic_view(t).corners[0].pixel).norm(), 0, 1e-10);
-    EXPECT_NEAR(moment->velocity_px_s[0].x(), 20 - 6 * t + 21 * t * t, 1e-8);
-    EXPECT_NEAR(moment->velocity_px_s[0].y(), -5 + 3 * t * t, 1e-8);
+    EXPECT_NEAR(moment->motion[0].velocity_px_s.x(), 20 - 6 * t + 21 * t * t, 1e-8);
+    EXPECT_NEAR(moment->motion[0].velocity_px_s.y(), -5 + 3 * t * t, 1e-8);
+  }
+}
+
+TEST(BoardFilm, TellsHowTheVarianceChanges) {
+  const BoardFilm film = cubic_film(12);  // of sigma_px 0.1
+  const auto variance = [&](double t) { return std::pow(film.at(t)->view.corners[0].sigma_px, 2); };
+  EXPECT_NEAR(film.at(0.55)->motion[0].variance_rate_px2_s, 0, 1e-12);
+  for (const double t : {0.51, 0.58}) {
+    const double slope = (variance(t + 1e-5) - variance(t - 1e-5)) / 2e-5;
+    EXPECT_NEAR(film.at(t)->motion[0].variance_rate_px2_s, slope, 1e-6);
+    EXPECT_GT(std::abs(slope), 0.01);
   }
 }
 

@@ -47,6 +47,26 @@ TEST(ClockOffset, IsNotFoundFromFilmsThatDoNotOverlap) {
   }
 }
 
+// A pendulum of 2 s: every swing looks like the one before.
+TEST(ClockOffset, IsNotFoundFromMotionThatRepeatsItself) {
+  const auto swinging = [](const BundleCamera& camera, const SimulatedFilm& film, unsigned seed) {
+    const CameraFilm once = simulate_film(camera, HandMotion(16), {film.start_s, 2, film.rate_hz, 0}, seed);
+    std::vector<BoardView> views;
+    for (int i = 0; i < 5; ++i) {
+      for (BoardView view : once.film.views()) {
+        view.time_s += 2.0 * i;
+        view.frame += static_cast<int>(2 * film.rate_hz) * i;
+        views.push_back(std::move(view));
+      }
+    }
+    return CameraFilm{camera.camera, BoardFilm(std::move(views))};
+  };
+  const auto cameras = filming_cameras();
+  const ClockOffset found = find_clock_offset({shape_of(filmed_chessboard())}, swinging(cameras[0], {0, 10, 20}, 1),
+                                              swinging(cameras[1], {0, 10, 20}, 2));
+  EXPECT_EQ(found.outcome, Outcome::Ambiguous) << found.offset_s;
+}
+
 TEST(ClockOffset, IsNotFoundFromFewViews) {
   EXPECT_EQ(find(HandMotion(14), {0, 9, 20, 0}, {0, 0.5, 20, 0}, 14).outcome, Outcome::TooFewViews);
 }

@@ -21,12 +21,12 @@ struct FilmedPair {
   CameraTie truth;
 };
 
-FilmedPair film_pair(unsigned seed, double duration_s, double noise_px = 0.1) {
+FilmedPair film_pair(unsigned seed, double duration_s, double second_hz = 25) {
   const auto cameras = filming_cameras();
   const HandMotion motion(seed);
   return {{shape_of(filmed_chessboard())},
-          simulate_film(cameras[0], motion, {0, duration_s, 30, 0, noise_px}, 2 * seed + 1),
-          simulate_film(cameras[1], motion, {0.3, duration_s, 25, kOffset, noise_px}, 2 * seed + 2),
+          simulate_film(cameras[0], motion, {0, duration_s, 30, 0}, 2 * seed + 1),
+          simulate_film(cameras[1], motion, {0.3, duration_s, second_hz, kOffset}, 2 * seed + 2),
           {kOffset, cameras[1].T_rig_camera}};
 }
 
@@ -57,6 +57,7 @@ TEST(ClockRefinement, FindsTheTieFromAStartThatIsOff) {
   }
 }
 
+// At equal rates the second camera's frames lie at the first one's moments here: noise must not push them apart.
 TEST(ClockRefinement, ItsErrorsAreAsLargeAsItStates) {
   constexpr int kTrials = 20;
   ClockRefinementOptions options;
@@ -64,7 +65,7 @@ TEST(ClockRefinement, ItsErrorsAreAsLargeAsItStates) {
   double offset_nees = 0, nees = 0;
   for (unsigned seed = 1; seed <= kTrials; ++seed) {
     SCOPED_TRACE(seed);
-    const FilmedPair pair = film_pair(seed, 4);
+    const FilmedPair pair = film_pair(seed, 4, seed % 2 == 0 ? 25 : 30);
     const auto refined = refine_tie(pair.board, pair.first, pair.second, moved(pair.truth, 0.01, 0.002), options);
     ASSERT_TRUE(refined);
     const auto error = error_of(*refined, pair.truth);
@@ -76,8 +77,6 @@ TEST(ClockRefinement, ItsErrorsAreAsLargeAsItStates) {
   EXPECT_LT(offset_nees, 2.4);
   EXPECT_GT(nees, 4.5);
   EXPECT_LT(nees, 10.1);
-  RecordProperty("offset_nees", std::to_string(offset_nees));
-  RecordProperty("nees", std::to_string(nees));
 }
 
 TEST(ClockRefinement, GrossCornersDoNotMatter) {
