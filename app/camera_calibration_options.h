@@ -11,9 +11,13 @@ namespace alidade {
 /// The lens that a user asks for: one of LensModel's, or "auto".
 enum class LensChoice { Auto, Radial, Brown, Rational, Fisheye };
 
+/// Whether the places of the board's corners are found too, taken as printed, or whichever does better.
+enum class CornerChoice { Auto, Printed, Found };
+
 /// What a user may choose about a calibration of cameras.
 struct CameraCalibrationChoice {
   LensChoice lens = LensChoice::Auto;
+  CornerChoice corners = CornerChoice::Auto;
   CameraCalibrationOptions solver;
 };
 
