@@ -49,6 +49,18 @@ std::optional<Vector2d> step_along(const Lattice& lattice, int id, int right, in
   return (to - from) / (next && last ? 2 : 1);
 }
 
+// How the lattice's line through a corner bends, px per step squared: the second difference of it and its neighbours,
+// at the rim of its next ones; none where there are not three in a line.
+Vector2d bend_along(const Lattice& lattice, int id, int right, int down) {
+  for (const int middle : {0, 1, -1}) {
+    const Vector2d* last = lattice.at(id, (middle - 1) * right, (middle - 1) * down);
+    const Vector2d* here = lattice.at(id, middle * right, middle * down);
+    const Vector2d* next = lattice.at(id, (middle + 1) * right, (middle + 1) * down);
+    if (last && here && next) return *last - 2 * *here + *next;
+  }
+  return Vector2d::Zero();
+}
+
 Vector2d adjust_by_gradient(const cv::Mat& grey, const CrossingStart& start) {
   const Vector2d& p = start.pixel;
   const double spacing = std::min(start.step_x.norm(), start.step_y.norm());
@@ -83,6 +95,27 @@ BoardCorner refined(const cv::Mat& grey, int id, const CrossingStart& start, con
   return {id, adjust_by_gradient(grey, start), options.unfitted_sigma_px};
 }
 
+enum class Edges { Straight, Bent };
+
+std::vector<BoardCorner> refine_once(const cv::Mat& grey, std::span<const BoardCorner> corners, int columns,
+                                     Edges edges, const CornerRefinementOptions& options) {
+  const Lattice lattice(corners, columns);
+  std::vector<BoardCorner> result;
+  for (const BoardCorner& corner : corners) {
+    const auto step_x = step_along(lattice, corner.id, 1, 0), step_y = step_along(lattice, corner.id, 0, 1);
+    if (!step_x || !step_y) continue;
+    CrossingStart start{.pixel = corner.pixel, .step_x = *step_x, .step_y = *step_y};
+    start.half_width = options.half_width;
+    start.band = options.band;
+    if (edges == Edges::Bent) {
+      start.bend_x = bend_along(lattice, corner.id, 1, 0);
+      start.bend_y = bend_along(lattice, corner.id, 0, 1);
+    }
+    result.push_back(refined(grey, corner.id, start, options));
+  }
+  return result;
+}
+
 }  // namespace
 
 void validate(const CornerRefinementOptions& o) {
@@ -111,19 +144,8 @@ std::vector<BoardCorner> refine_corners(const cv::Mat& grey, std::span<const Boa
       throw std::invalid_argument("refine_corners: each corner needs an id >= 0 and a finite pixel");
     }
   }
-  const Lattice lattice(corners, columns);
-  std::vector<BoardCorner> result;
-  for (const BoardCorner& corner : corners) {
-    const auto step_x = step_along(lattice, corner.id, 1, 0), step_y = step_along(lattice, corner.id, 0, 1);
-    if (!step_x || !step_y) continue;
-    const CrossingStart start{.pixel = corner.pixel,
-                              .step_x = *step_x,
-                              .step_y = *step_y,
-                              .half_width = options.half_width,
-                              .band = options.band};
-    result.push_back(refined(grey, corner.id, start, options));
-  }
-  return result;
+  const std::vector<BoardCorner> straight = refine_once(grey, corners, columns, Edges::Straight, options);
+  return refine_once(grey, straight, columns, Edges::Bent, options);
 }
 
 }  // namespace alidade

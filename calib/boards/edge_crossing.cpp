@@ -63,38 +63,51 @@ double blur_of(double log_blur) {
 
 class Edge {
  public:
-  Edge(double angle, double log_blur)
-      : along_(std::cos(angle), std::sin(angle)),
+  Edge(double angle, double log_blur, double bend = 0)
+      : bend_(bend),
+        along_(std::cos(angle), std::sin(angle)),
         across_(-along_.y(), along_.x()),
         per_blur_(1 / (std::numbers::sqrt2 * blur_of(log_blur))),
         by_log_blur_(std::exp(2 * log_blur) * 2 * per_blur_ * per_blur_) {}
 
   // At a point `q` away from the crossing.
   Transition at(const Vector2d& q) const {
-    const double z = across_.dot(q) * per_blur_;
+    const double along = along_.dot(q), across = across_.dot(q);
+    const double z = (across - 0.5 * bend_ * along * along) * per_blur_;
     if (std::abs(z) > 4) return {.value = z > 0 ? 1.0 : -1.0};  // 2e-8 from there
     const double slope = 2 * std::numbers::inv_sqrtpi * std::exp(-z * z);
-    return {std::erf(z), -slope * per_blur_ * across_, -slope * per_blur_ * along_.dot(q), -slope * z * by_log_blur_};
+    return {std::erf(z), -slope * per_blur_ * (across_ - bend_ * along * along_),
+            -slope * per_blur_ * along * (1 + bend_ * across), -slope * z * by_log_blur_};
   }
 
  private:
+  double bend_;  // 1/px, towards across_
   Vector2d along_, across_;
   double per_blur_, by_log_blur_;
 };
+
+// Curvature towards the left of `step` (x right, y down: its normal turned from x to y), 1/px.
+double bend_of(const Vector2d& step, const Vector2d& bend) {
+  return (step.x() * bend.y() - step.y() * bend.x()) / std::pow(step.norm(), 3);
+}
 
 class CrossingProblem {
  public:
   using Scalar = double;
   enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = kUnknowns };
 
-  CrossingProblem(std::vector<Sample> samples, double log_blur) : samples_(std::move(samples)), log_blur_(log_blur) {}
+  CrossingProblem(std::vector<Sample> samples, const CrossingStart& start)
+      : samples_(std::move(samples)),
+        log_blur_(std::log(start.blur_px)),
+        bend1_(bend_of(start.step_x, start.bend_x)),
+        bend2_(bend_of(start.step_y, start.bend_y)) {}
 
   int NumResiduals() const { return pixels() + 2; }
 
   bool operator()(const double* x, double* residuals, double* jacobian) const {
     const Eigen::Map<const Unknowns> m(x);
     Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, kUnknowns>> J(jacobian, jacobian ? NumResiduals() : 0, kUnknowns);
-    const Edge edge1(x[kAngle1], x[kLogBlur1]), edge2(x[kAngle2], x[kLogBlur2]);
+    const Edge edge1(x[kAngle1], x[kLogBlur1], bend1_), edge2(x[kAngle2], x[kLogBlur2], bend2_);
     for (int i = 0; i < pixels(); ++i) {
       const Vector2d& p = samples_[i].offset;
       const Transition e1 = edge1.at(p - m.head<2>()), e2 = edge2.at(p - m.head<2>());
@@ -119,7 +132,7 @@ class CrossingProblem {
   int pixels() const { return static_cast<int>(samples_.size()); }
 
   std::vector<Sample> samples_;
-  double log_blur_;
+  double log_blur_, bend1_, bend2_;
 };
 
 // Light and contrast by least squares at the geometry of the start.
@@ -156,7 +169,7 @@ std::optional<EdgeCrossing> fit_edge_crossing(const cv::Mat& grey, const Crossin
   std::vector<Sample> samples = samples_of(grey, start);
   if (samples.size() < kLeastPixels) return std::nullopt;
   Unknowns x = first_guess(samples, start);
-  const CrossingProblem problem(std::move(samples), std::log(start.blur_px));
+  const CrossingProblem problem(std::move(samples), start);
   ceres::TinySolver<CrossingProblem> solver;
   solver.options.max_num_iterations = 25;
   solver.options.function_tolerance = 1e-3;  // grey levels squared, all pixels together: far below the noise

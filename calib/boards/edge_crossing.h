@@ -14,15 +14,17 @@ namespace alidade {
 struct CrossingStart {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();   ///< px, well inside the window
   Eigen::Vector2d step_x = {1, 0}, step_y = {0, 1};  ///< to the next crossings, along the two edges, px
-  double half_width = 0.4;                           ///< of the window, in steps
-  double band = 1;     ///< to either side of an edge, in steps; where squares carry marks, what is free of them
-  int stride = 1;      ///< every so many pixels of the window's rows and columns are looked at
-  double blur_px = 1;  ///< to start from
+  /// How the edges bend there: t steps along step_x an edge lies at t step_x + t²/2 bend_x, px.
+  Eigen::Vector2d bend_x = Eigen::Vector2d::Zero(), bend_y = Eigen::Vector2d::Zero();
+  double half_width = 0.4;  ///< of the window, in steps
+  double band = 1;          ///< to either side of an edge, in steps; where squares carry marks, what is free of them
+  int stride = 1;           ///< every so many pixels of the window's rows and columns are looked at
+  double blur_px = 1;       ///< to start from
 };
 
-/// Two straight edges between dark and light that cross, each blurred by its own Gaussian (focus and motion):
-/// I(p) = b + g·(p - c0) + (a + h·(p - c0)) erf(d1 / (√2 s1)) erf(d2 / (√2 s2)), d the signed distance from an edge,
-/// c0 the start.
+/// Two edges between dark and light that cross, straight or bent as CrossingStart says, each blurred by its own
+/// Gaussian (focus and motion): I(p) = b + g·(p - c0) + (a + h·(p - c0)) erf(d1 / (√2 s1)) erf(d2 / (√2 s2)), d the
+/// signed distance from an edge, c0 the start.
 struct EdgeCrossing {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();           ///< where the edges cross, px
   Eigen::Matrix2d covariance_px2 = Eigen::Matrix2d::Zero();  ///< of pixel: residual noise times inverse information

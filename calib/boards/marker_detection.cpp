@@ -23,20 +23,23 @@ using Eigen::Vector2d;
 // How far the outlines of markers may lead from a corner: in px, or as a share of the distance to the next edge.
 constexpr double kWithin_px = 3.0, kWithinShare = 0.25;
 
-// How far from each corner other edges are, m along both axes of the board.
-double clear_m(const Board& board, int border_cells) {
-  if (board.kind == BoardKind::Charuco) {
-    return std::min(0.4 * board.square_m, 0.5 * (board.square_m - board.marker_m));
-  }
+// What is free of other edges about each corner, m along both axes of the board: to the ends of the edges, and to
+// either side of them.
+struct Clearance {
+  double along_m, beside_m;
+};
+
+Clearance clearance(const Board& board, int border_cells) {
+  if (board.kind == BoardKind::Charuco) return {0.4 * board.square_m, 0.5 * (board.square_m - board.marker_m)};
   const int cells = marker_cells(board.dictionary, 0).cols + 2 * (border_cells - 1);
-  return std::min(board.gap_m, board.square_m * border_cells / cells);
+  return {board.gap_m, board.square_m * border_cells / cells};
 }
 
 // A guess at a corner from a map of the board into the image, of which it is off by at most `within_px` or a share of
 // the distance to the next edge.
 struct GuessMaker {
   std::vector<Eigen::Vector3d> corners;  // of the board, m
-  double clear_m;
+  Clearance clear;
   double within_px, within_share;
 
   Vector2d on_board(int id) const { return corners[static_cast<std::size_t>(id)].head<2>(); }
@@ -45,8 +48,11 @@ struct GuessMaker {
   CrossingGuess at(int id, const Map& map) const {
     const Vector2d p = on_board(id);
     const Vector2d pixel = map(p);
-    const Vector2d step_x = map(p + Vector2d(clear_m, 0)) - pixel, step_y = map(p + Vector2d(0, clear_m)) - pixel;
-    return {id, pixel, step_x, step_y, std::max(within_px, within_share * std::min(step_x.norm(), step_y.norm()))};
+    const Vector2d step_x = map(p + Vector2d(clear.along_m, 0)) - pixel;
+    const Vector2d step_y = map(p + Vector2d(0, clear.along_m)) - pixel;
+    const double band = std::min(1.0, clear.beside_m / clear.along_m);
+    const double within = within_share * band * std::min(step_x.norm(), step_y.norm());
+    return {id, pixel, step_x, step_y, band, std::max(within_px, within)};
   }
 
   CrossingGuess at(int id, const Eigen::Matrix3d& H_image_board) const {
@@ -118,7 +124,7 @@ std::vector<BoardCorner> charuco_corners(const cv::Mat& grey, const Board& board
   const auto on_board = markers(board);
   const auto found = find_markers(grey, {board.dictionary, 1, false, static_cast<int>(on_board.size())});
   const auto placed = place_consistently(found, on_board);
-  const GuessMaker maker{corners_m(board), clear_m(board, 1), kWithin_px, kWithinShare};
+  const GuessMaker maker{corners_m(board), clearance(board, 1), kWithin_px, kWithinShare};
   std::vector<CrossingGuess> guesses;
   for (int id = 0; id < corner_count(board); ++id) {
     const auto about = markers_about(placed, id % (board.columns - 1), id / (board.columns - 1));
@@ -186,7 +192,7 @@ std::vector<BoardCorner> grid_corners(const cv::Mat& grey, const Board& board) {
     const auto found = find_markers(grey, {board.dictionary, border_cells, true, board.columns * board.rows});
     const auto placed = place_tags(board, found);
     if (placed.empty()) continue;
-    const GuessMaker maker{corners_m(board), clear_m(board, border_cells), kWithin_px, kWithinShare};
+    const GuessMaker maker{corners_m(board), clearance(board, border_cells), kWithin_px, kWithinShare};
     std::vector<CrossingGuess> guesses;
     for (const PlacedMarker& tag : placed) {
       const auto H = homography_of(tags_about(placed, tag));

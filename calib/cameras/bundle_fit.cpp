@@ -62,12 +62,17 @@ bool weigh(const std::vector<std::vector<double>>& lengths, Weighting weighting,
   return has_changed;
 }
 
-// Least squares would never come back from a whole view of another moment: views that are far off at the start wait
-// until the others are solved.
+// Least squares would never come back from a whole view of another moment: views that are far off at the start, for
+// their camera, wait until the others are solved.
 void hold_back_far_views(const BoardShape& shape, const BundleFitOptions& options, BundleFit& fit) {
   measure_scales(residual_sigmas(fit.bundle, shape, fit.views), fit);
+  std::vector<std::vector<double>> of_camera(fit.bundle.cameras.size());
   for (std::size_t v = 0; v < fit.views.size(); ++v) {
-    if (fit.view_scale[v] <= options.view_scale_limit * fit.scale) continue;
+    of_camera[static_cast<std::size_t>(fit.views[v].camera)].push_back(fit.view_scale[v]);
+  }
+  for (std::size_t v = 0; v < fit.views.size(); ++v) {
+    const double usual = median(of_camera[static_cast<std::size_t>(fit.views[v].camera)]);
+    if (fit.view_scale[v] <= options.view_scale_limit * usual) continue;
     std::fill(fit.views[v].weights.begin(), fit.views[v].weights.end(), 0.0);
   }
 }

@@ -75,20 +75,39 @@ void fit_jointly(const BoardShape& shape, std::span<const RigCameraViews> camera
   rig.solve_s = processor_time_s() - begin;
 }
 
-void judge(const BoardShape& shape, RigCalibration& rig) {
-  rig.rms_px = rms_px(rig.fit.bundle, shape, rig.fit.views);
-  rig.rms_all_px = rms_px(rig.fit.bundle, shape, rig.fit.views, true);
-  const auto covariance = bundle_covariance(rig.fit, shape, rig.freedom);
-  rig.outcome = covariance ? Outcome::Calibrated : Outcome::Undetermined;
-  if (!covariance) return;
-  rig.covariance = *covariance;
-  const int count = static_cast<int>(rig.fit.bundle.cameras.size());
-  for (int c = 0; c < count; ++c) {
+// Whether a camera fits much worse with the others than alone, or must drop most of its views to fit.
+bool disagrees(const std::vector<BundleView>& own, double rms_px, double alone_px) {
+  const auto dropped = std::count_if(own.begin(), own.end(), [](const BundleView& view) {
+    const auto cut = std::count(view.weights.begin(), view.weights.end(), 0.0);
+    return 2 * cut > static_cast<std::ptrdiff_t>(view.weights.size());
+  });
+  constexpr double kLeastNoise = 0.01;  // px; no detector does better
+  return rms_px > 3.0 * std::max(alone_px, kLeastNoise) || 2 * dropped > static_cast<std::ptrdiff_t>(own.size());
+}
+
+void measure_cameras(const BoardShape& shape, RigCalibration& rig) {
+  for (int c = 0; c < static_cast<int>(rig.fit.bundle.cameras.size()); ++c) {
     std::vector<BundleView> own;
     std::copy_if(rig.fit.views.begin(), rig.fit.views.end(), std::back_inserter(own),
                  [c](const BundleView& view) { return view.camera == c; });
     rig.camera_rms_px.push_back(rms_px(rig.fit.bundle, shape, own));
     rig.residuals.push_back(residual_field(rig.fit, shape, c));
+    const double alone_px = rig.alone[static_cast<std::size_t>(c)].rms_px;
+    if (disagrees(own, rig.camera_rms_px.back(), alone_px)) rig.failed.push_back(c);
+  }
+}
+
+void judge(const BoardShape& shape, RigCalibration& rig) {
+  rig.rms_px = rms_px(rig.fit.bundle, shape, rig.fit.views);
+  rig.rms_all_px = rms_px(rig.fit.bundle, shape, rig.fit.views, true);
+  measure_cameras(shape, rig);
+  rig.outcome = Outcome::Disagreeing;
+  if (!rig.failed.empty()) return;
+  const auto covariance = bundle_covariance(rig.fit, shape, rig.freedom);
+  rig.outcome = covariance ? Outcome::Calibrated : Outcome::Undetermined;
+  if (!covariance) return;
+  rig.covariance = *covariance;
+  for (int c = 0; c < static_cast<int>(rig.fit.bundle.cameras.size()); ++c) {
     for (int first = 0; first < c; ++first) {
       if (const auto pair = pair_error(rig.fit, rig.freedom, rig.covariance, first, c)) rig.pairs.push_back(*pair);
     }
@@ -138,6 +157,11 @@ std::string explain(const RigCalibration& rig, std::span<const RigCameraViews> c
       return fmt::format(
           "camera '{}' never sees the board at a moment at which the others do; show it the board "
           "together with one of them, and check that images of one moment bear the same number",
+          name());
+    case Outcome::Disagreeing:
+      return fmt::format(
+          "camera '{}' and the others do not show the same board at the same moments; check that images of one "
+          "moment bear the same number, and that no camera was moved on the rig in between",
           name());
     case Outcome::Undetermined:
       return "the images do not determine where the cameras stand; show the board to more of them at once";

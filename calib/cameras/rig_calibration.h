@@ -22,6 +22,7 @@ enum class RigCalibrationOutcome {
   Calibrated,
   CameraFailed,  ///< a camera alone has no calibration
   Untied,        ///< a camera shares no moment with the others
+  Disagreeing,   ///< what the cameras show at one moment is not one board
   Undetermined,
   Stopped,
 };
@@ -38,7 +39,7 @@ struct PairError {
 struct RigCalibration {
   RigCalibrationOutcome outcome = RigCalibrationOutcome::Calibrated;
   std::vector<CameraCalibration> alone;  ///< each camera by itself; the joint fit starts from there
-  std::vector<int> failed;               ///< CameraFailed, Untied: which
+  std::vector<int> failed;               ///< CameraFailed, Untied, Disagreeing: which
   BundleFreedom freedom;
   BundleFit fit;  ///< jointly; frames as the given views number them
   BundleCovariance covariance;

@@ -103,6 +103,28 @@ TEST(SolveBundle, LetsStandWhatIsNotFree) {
   EXPECT_EQ(solution.bundle.warp.x_m, 0);
 }
 
+TEST(SolveBundle, LetsCamerasStandWhereTheyAreHeld) {
+  const Camera camera = test::simulated_camera(LensModel::Radial);
+  std::vector<BundleCamera> cameras(2, {camera, Eigen::Isometry3d::Identity()});
+  cameras[1].T_rig_camera.translation().x() = 0.05;
+  const auto rig = test::simulate_rig(cameras, {{0, 1}, {0, 1}, {0, 1}}, {.noise_px = 0.1}, 3);
+  std::vector<BundleView> views;
+  for (int c = 0; c < 2; ++c) {
+    for (const BoardView& view : rig.cameras[static_cast<std::size_t>(c)].views) {
+      views.push_back({c, view.frame, view.corners, std::vector<double>(view.corners.size(), 1.0)});
+    }
+  }
+  BundleFreedom freedom;
+  const BoardBundle start = disturbed({cameras, rig.T_rig_board, {}}, 2);
+  const auto moved_of = [&](const BundleSolution& solution) {
+    return difference(start.cameras[1].T_rig_camera, solution.bundle.cameras[1].T_rig_camera).norm();
+  };
+  const BoardShape shape = shape_of(test::simulated_board());
+  EXPECT_GT(moved_of(solve_bundle(start, shape, views, freedom)), 1e-6);
+  freedom.camera_poses = false;
+  EXPECT_EQ(moved_of(solve_bundle(start, shape, views, freedom)), 0);
+}
+
 TEST(SolveBundle, IgnoresCornersWithoutWeight) {
   auto simulated = test::simulate_bundle(test::simulated_camera(LensModel::Radial), {.sigma_px = 1e-4}, 3);
   simulated.views[2].corners[10].pixel += Eigen::Vector2d(30, -20);

@@ -192,6 +192,32 @@ TEST(ExplainRig, NamesTheCameraThatNothingTies) {
             "with one of them, and check that images of one moment bear the same number");
 }
 
+// The second camera's images are one late: at no moment do both show the board at one place.
+TEST(ExplainRig, NamesACameraOfOtherMoments) {
+  auto cameras = three_cameras();
+  cameras.resize(2);
+  auto rig = test::simulate_rig(cameras, std::vector<std::vector<int>>(10, {0, 1}), {.noise_px = 0.1}, 2);
+  for (BoardView& view : rig.cameras[1].views) ++view.frame;
+  const RigCalibration found = calibrate(rig);
+  EXPECT_EQ(found.outcome, Outcome::Disagreeing);
+  EXPECT_EQ(explain(found, rig.cameras),
+            "camera 'camera0' and the others do not show the same board at the same moments; check that images of one "
+            "moment bear the same number, and that no camera was moved on the rig in between");
+}
+
+// A quarter of the moments are wrong: they are dropped.
+TEST(CalibrateRig, DropsMomentsThatDisagree) {
+  auto cameras = three_cameras();
+  cameras.resize(2);
+  auto rig = test::simulate_rig(cameras, std::vector<std::vector<int>>(16, {0, 1}), {.noise_px = 0.1}, 1);
+  for (int i = 0; i < 4; ++i) rig.cameras[1].views[static_cast<std::size_t>(i)].frame = (i + 1) % 4;
+  const RigCalibration found = calibrate(rig);
+  ASSERT_EQ(found.outcome, Outcome::Calibrated) << explain(found, rig.cameras);
+  EXPECT_LT(difference(cameras[1].T_rig_camera, found.fit.bundle.cameras[1].T_rig_camera).norm(), 0.003);
+  EXPECT_GE(found.pairs[0].corners, 12 * 54 - 3);
+  EXPECT_LE(found.pairs[0].corners, 12 * 54);
+}
+
 TEST(ExplainRig, NamesTheCameraThatFailsAlone) {
   auto rig = chained_rig(0.1, 2);
   rig.cameras[1].views.resize(1);
