@@ -112,7 +112,8 @@ BoardChoice choose_board(const std::string& text, const std::string& source) {
   return {guess->board, true, guess->scale_is_assumed};
 }
 
-BoardImages read_board_images(const std::string& source, const Board& board, const RunContext& context) {
+BoardImages read_board_images(const std::string& source, const Board& board, const RunContext& context,
+                              FilmViews kept) {
   const auto frames = open_files(source);
   const auto count = frames->frame_count();
   BoardImages images;
@@ -128,7 +129,7 @@ BoardImages read_board_images(const std::string& source, const Board& board, con
   if (const auto fault = frames->fault()) context.warn(source + ": " + *fault);
   images.seen = static_cast<int>(images.views.size());
   if (images.views.empty() && !context.stop.stop_requested()) refuse_without_board(images, board);
-  if (images.seen > kFilm) {
+  if (images.seen > kFilm && kept == FilmViews::StillAndDistinct) {
     std::vector<BoardView> chosen;
     for (const int i : select_views(images.views, images.image)) {
       chosen.push_back(std::move(images.views[static_cast<std::size_t>(i)]));

@@ -38,13 +38,17 @@ struct BoardImages {
   ImageExtent image;
   bool has_times = false;
   std::vector<BoardImage> images;
-  std::vector<BoardView> views;  ///< `frame`: index into images; of a long film the still, different ones only
+  std::vector<BoardView> views;  ///< `frame`: index into images; of a long film the still, different ones, or all
   cv::Mat sample;                ///< the first image with a board, as it came
   int seen = 0;                  ///< images with a board, before views of a film are chosen
 };
 
+/// Which views of a film are kept: those to calibrate from, or all.
+enum class FilmViews { StillAndDistinct, All };
+
 /// Looks for the board in every image of a folder, glob, list or video. Throws InputError where an image is damaged or
 /// of another size, and where no image shows the board: then with what they seem to show.
-BoardImages read_board_images(const std::string& source, const Board& board, const RunContext& context);
+BoardImages read_board_images(const std::string& source, const Board& board, const RunContext& context,
+                              FilmViews kept = FilmViews::StillAndDistinct);
 
 }  // namespace alidade

@@ -40,6 +40,8 @@ std::string_view name_of(MomentsBy by) {
       return "the number in their names";
     case MomentsBy::Order:
       return "order";
+    case MomentsBy::Motion:
+      return "the board's motion";
   }
   return "";
 }
@@ -55,6 +57,10 @@ nlohmann::json camera_summary(const RigCalibrationRun& run, std::size_t c) {
                          {"rms_px", rig.camera_rms_px[c]},
                          {"alone_rms_px", alone.rms_px},
                          {"lens_fits", lens_fits(rig.residuals[c])}};
+  if (!run.clocks.empty()) {
+    summary["clock_offset_s"] = run.clocks[c].offset_s;
+    summary["clock_offset_sigma_s"] = run.clocks[c].sigma_s;
+  }
   if (alone.held_out_rms_px) summary["held_out_rms_px"] = *alone.held_out_rms_px;
   for (std::size_t i = 0; i < alone.verdicts.size(); ++i) {
     summary["views"].push_back({{"image", run.images[c].views[i].name},
@@ -85,6 +91,7 @@ CameraRig rig_of(const RigCalibrationRun& run) {
     const int index = static_cast<int>(c);
     RigCamera camera{run.names[c], fitted.camera, fitted.T_rig_camera};
     camera.intrinsics_covariance = intrinsics_covariance(result.covariance, layout, fitted.camera, index);
+    if (!run.clocks.empty()) camera.clock_offset_s = run.clocks[c].offset_s;
     if (c > 0) camera.pose_covariance = camera_pose_covariance(result, index);
     rig.cameras.push_back(std::move(camera));
   }
@@ -140,6 +147,12 @@ std::vector<ReportRow> figure_rows(const RigCalibrationRun& run) {
     rows.push_back({run.names[c] + ", RMS", fmt::format("{:.3f}", rig.camera_rms_px[c]), "px",
                     is_good ? Verdict::Good : Verdict::Poor,
                     fmt::format("lens {}; alone {:.3f}", name_of(rig.alone[c].model.lens), rig.alone[c].rms_px)});
+  }
+  for (std::size_t c = 1; c < run.clocks.size(); ++c) {
+    const ClockOffset& clock = run.clocks[c];
+    rows.push_back({fmt::format("{}, clock offset to {}", run.names[c], run.names[0]),
+                    fmt::format("{:.3f} ± {:.3f}", 1e3 * clock.offset_s, 1e3 * clock.sigma_s), "ms", Verdict::None,
+                    fmt::format("{:.3f} px at {} moments", clock.rms_px, clock.moments)});
   }
   for (const PairError& pair : rig.pairs) {
     rows.push_back({pair_name(run, pair) + ", epipolar error, RMS", fmt::format("{:.3f}", pair.epipolar_rms_px), "px",

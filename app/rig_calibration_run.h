@@ -8,6 +8,7 @@
 
 #include "app/camera_calibration_run.h"
 #include "app/rig_moments.h"
+#include "calib/cameras/clock_offset.h"
 #include "calib/cameras/rig_calibration.h"
 #include "camera/camera_rig.h"
 
@@ -19,6 +20,7 @@ struct RigCalibrationRun {
   std::vector<std::string> names;
   std::vector<BoardImages> images;  ///< by camera
   Moments moments;
+  std::vector<ClockOffset> clocks{};  ///< by camera, the first one's being the rig's; empty: of one clock
   RigCalibration result;
   double calibration_s = 0;
   std::vector<std::string> warnings;

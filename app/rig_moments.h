@@ -9,8 +9,8 @@
 
 namespace alidade {
 
-/// How images of several cameras were told to belong together.
-enum class MomentsBy { Time, Number, Order };
+/// How images of several cameras were told to belong together; Motion: of the board, by films without a common clock.
+enum class MomentsBy { Time, Number, Order, Motion };
 
 /// Which images belong to one moment.
 struct Moments {

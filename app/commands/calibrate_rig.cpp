@@ -9,6 +9,7 @@
 #include "app/camera_calibration_options.h"
 #include "app/commands/verbs.h"
 #include "app/rig_calibration_report.h"
+#include "app/rig_synchronisation.h"
 #include "core/errors.h"
 
 namespace alidade {
@@ -19,6 +20,9 @@ class CalibrateRigCommand : public Command {
   CalibrateRigCommand(CLI::App& flags, const std::string& verb) : verb_(verb) {
     flags.add_option("--board", board_, "as of calibrate camera; left out: guessed");
     flags.add_option("--names", names_, "of the cameras, by commas; left out: after their sources")->delimiter(',');
+    flags.add_flag("--unsynchronised", is_unsynchronised_,
+                   "films of cameras without a common clock or trigger: finds by how much their clocks differ from how "
+                   "the board moves; give videos, or folders with times.csv");
     bind(options_, choice_);
   }
 
@@ -28,10 +32,16 @@ class CalibrateRigCommand : public Command {
     run.board = choose_board(board_, sources_.front());
     if (run.board.is_guessed) context.tell("board: " + describe(run.board.board));
     for (const std::string& source : sources_) {
-      run.images.push_back(read_board_images(source, run.board.board, context));
+      run.images.push_back(read_board_images(source, run.board.board, context,
+                                             is_unsynchronised_ ? FilmViews::All : FilmViews::StillAndDistinct));
       if (context.stop.stop_requested()) return ExitCode::Interrupted;
     }
-    run.moments = match_moments(run.images);
+    if (is_unsynchronised_) {
+      synchronise_cameras(run, effective_options(choice_), context);
+      if (run.clocks.empty()) return ExitCode::Interrupted;
+    } else {
+      run.moments = match_moments(run.images);
+    }
     ResultDirectory directory(context.output, verb_);
     const auto views = rig_views(run);
     const auto begin = std::chrono::steady_clock::now();
@@ -82,6 +92,7 @@ class CalibrateRigCommand : public Command {
 
   std::string verb_, board_;
   std::vector<std::string> names_;
+  bool is_unsynchronised_ = false;
   CameraCalibrationChoice choice_;
 };
 
