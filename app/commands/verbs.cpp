@@ -7,6 +7,7 @@ std::vector<Verb> all_verbs() {
   return {track_camera_verb(),
           track_body_verb(),
           calibrate_board_verb(),
+          guide_verb(),
           calibrate_camera_verb(),
           calibrate_stereo_verb(),
           calibrate_rig_verb(),

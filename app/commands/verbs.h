@@ -15,6 +15,7 @@ Verb track_camera_verb();
 Verb track_body_verb();
 Verb calibrate_board_verb();
 Verb calibrate_camera_verb();
+Verb guide_verb();
 Verb calibrate_stereo_verb();
 Verb calibrate_rig_verb();
 Verb calibrate_detectors_verb();
