@@ -142,6 +142,12 @@ void add_warnings(CameraCalibrationRun& run) {
                     "uncertainties are {:.1f} times those of independent errors",
                     std::sqrt(c.covariance.within_views)));
   }
+  if (c.covariance.left_out > 1) {
+    warnings.push_back(
+        fmt::format("images left out err {:.1f} times as much as those that were fitted: uncertainties "
+                    "are enlarged as much; take more images",
+                    std::sqrt(c.covariance.left_out)));
+  }
   if (coverage(c.residuals) < kLeastCoverage) {
     warnings.push_back(fmt::format("corners cover {:.0f} % of the image; show the board at its edges and corners too",
                                    100.0 * coverage(c.residuals)));

@@ -15,7 +15,8 @@ namespace alidade {
 struct BundleCovariance {
   Eigen::MatrixXd shared_and_motion;  ///< order: the shared parameters of BundleLayout, then u (m) and w (rad)
   double sigma = 1;                   ///< of one coordinate in units of the corners' sigma_px, from the residuals
-  double within_views = 1;            ///< by how much errors that go together within a view enlarge variances, >= 1
+  double left_out = 1;  ///< by how much errors on views left out enlarge them beside that, >= 1 (see calibrate_camera)
+  double within_views = 1;  ///< by how much errors that go together within a view enlarge variances, >= 1
 };
 
 /// Of a fit with this freedom. Empty where the views do not determine the parameters.

@@ -42,6 +42,8 @@ void measure_scales(const std::vector<std::vector<double>>& lengths, BundleFit& 
   fit.scale = median(std::move(all)) / kRayleighMedian;
 }
 
+constexpr double kUsualScatter = 1.3;  // by chance, of the median of some dozens of corners
+
 enum class Weighting { Fading, Cut };
 
 // Returns whether a corner changed sides.
@@ -50,7 +52,8 @@ bool weigh(const std::vector<std::vector<double>>& lengths, Weighting weighting,
   bool has_changed = false;
   for (std::size_t v = 0; v < fit.views.size(); ++v) {
     const double scale = std::clamp(fit.view_scale[v], fit.scale, options.view_scale_limit * fit.scale);
-    const double trust = options.weigh_views ? std::pow(fit.scale / std::max(scale, 1e-9), 2) : 1.0;
+    const bool scatters = options.weigh_views && scale > kUsualScatter * fit.scale;
+    const double trust = scatters ? std::pow(fit.scale / scale, 2) : 1.0;
     for (std::size_t i = 0; i < lengths[v].size(); ++i) {
       const double sigmas = lengths[v][i] / std::max(scale, 1e-9);
       double weight = sigmas <= options.outlier_sigmas ? trust : 0.0;
@@ -130,6 +133,14 @@ BundleFit fit_corners(const BundleFit& fit, const BoardShape& shape, const Bundl
   BoardBundle start = fit.bundle;
   start.warp = as_offsets(start.warp, shape);
   return fit_bundle(start, shape, fit.views, freedom, options);
+}
+
+double median_px(const BoardBundle& bundle, const BoardShape& shape, std::span<const BundleView> views) {
+  std::vector<double> lengths;
+  for (const BundleView& view : views) {
+    for (const Eigen::Vector2d& residual : residuals_px(bundle, shape, view)) lengths.push_back(residual.norm());
+  }
+  return median(std::move(lengths));
 }
 
 double rms_px(const BoardBundle& bundle, const BoardShape& shape, std::span<const BundleView> views, bool all) {

@@ -38,6 +38,9 @@ BundleFit fit_bundle(const BoardBundle& start, const BoardShape& shape, std::vec
 BundleFit fit_corners(const BundleFit& fit, const BoardShape& shape, const BundleFreedom& freedom,
                       const BundleFitOptions& options = {});
 
+/// Median length of the residuals of all corners, px; 0 for none.
+double median_px(const BoardBundle& bundle, const BoardShape& shape, std::span<const BundleView> views);
+
 /// Root mean square length of the residuals of the corners with weight (all: also of those without), px; 0 for none.
 double rms_px(const BoardBundle& bundle, const BoardShape& shape, std::span<const BundleView> views, bool all = false);
 

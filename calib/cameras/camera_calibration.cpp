@@ -78,8 +78,10 @@ std::optional<Tried> try_model(const CameraModel& model, const ImageExtent& imag
   if (!fit) return std::nullopt;
   Tried tried{{model, rms_px(fit->bundle, shape, fit->views), 0.0}, std::move(*fit)};
   const int folds = std::min(options.folds, static_cast<int>(views.size()));
-  const auto held_out = held_out_rms_px(model, image, shape, views, options.fit, folds);
-  tried.trial.held_out_rms_px = held_out.value_or(std::numeric_limits<double>::quiet_NaN());
+  const auto held_out = held_out_error(model, image, shape, views, options.fit, folds);
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  tried.trial.held_out_rms_px = held_out ? held_out->rms_px : unknown;
+  tried.trial.held_out_median_px = held_out ? held_out->median_px : unknown;
   return tried;
 }
 
@@ -127,7 +129,17 @@ Outcome judge(const CameraCalibration& calibration, const CameraCalibrationOptio
   return sigma < options.worst_focal_sigma * calibration.camera.fx ? Outcome::Calibrated : Outcome::Undetermined;
 }
 
-void finish(const BoardShape& shape, const CameraCalibrationOptions& options, CameraCalibration& calibration) {
+// Views that were left out may err far more than the ones that were fitted: then the fit has taken part of its errors
+// for the lens, and what it says of itself is as wrong.
+void enlarge_by_left_out(double left_out_median_px, const BoardShape& shape, CameraCalibration& c) {
+  const double ratio = std::pow(left_out_median_px / median_px(c.fit.bundle, shape, c.fit.views), 2);
+  if (!(ratio > 2.0)) return;  // less is usual for few views
+  c.covariance.left_out = ratio;
+  c.covariance.shared_and_motion *= ratio;
+}
+
+void finish(const BoardShape& shape, const CameraCalibrationOptions& options, double left_out_median_px,
+            CameraCalibration& calibration) {
   const BundleFit& fit = calibration.fit;
   calibration.camera = fit.bundle.cameras.front().camera;
   calibration.freedom = calibration.model.freedom();
@@ -138,6 +150,7 @@ void finish(const BoardShape& shape, const CameraCalibrationOptions& options, Ca
   judge_views(shape, calibration);
   const auto covariance = bundle_covariance(fit, shape, calibration.freedom);
   if (covariance) calibration.covariance = *covariance;
+  enlarge_by_left_out(left_out_median_px, shape, calibration);
   calibration.outcome = judge(calibration, options, covariance.has_value());
 }
 
@@ -186,7 +199,7 @@ CameraCalibration calibrate_camera(const ImageExtent& image, const Board& board,
   calibration.model = chosen.trial.model;
   calibration.fit = chosen.fit;
   if (std::isfinite(chosen.trial.held_out_rms_px)) calibration.held_out_rms_px = chosen.trial.held_out_rms_px;
-  finish(shape, options, calibration);
+  finish(shape, options, chosen.trial.held_out_median_px, calibration);
   return calibration;
 }
 

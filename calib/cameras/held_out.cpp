@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/cameras/held_out.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "calib/cameras/board_placement.h"
@@ -8,27 +9,29 @@
 namespace alidade {
 namespace {
 
-struct SquareSum {
-  double sum = 0;
-  int count = 0;
-};
-
-// What a camera leaves on views whose boards are placed by them alone. A view without a place counts as 10 px.
-SquareSum misfit_of(const BoardBundle& fitted, const BoardShape& shape, const std::vector<BundleView>& views) {
-  SquareSum squares;
+// Lengths (px) of what a camera leaves on views whose boards are placed by them alone, added to `lengths`. A view
+// without a place counts as 10 px.
+void add_misfit(const BoardBundle& fitted, const BoardShape& shape, const std::vector<BundleView>& views,
+                std::vector<double>& lengths) {
   for (const BundleView& view : views) {
-    squares.count += static_cast<int>(view.corners.size());
     const auto T = place_board(fitted.cameras.front().camera, shape, fitted.warp, view.corners);
     if (!T) {
-      squares.sum += 100.0 * static_cast<double>(view.corners.size());
+      lengths.insert(lengths.end(), view.corners.size(), 10.0);
       continue;
     }
     BundleView alone = view;
     alone.frame = 0;
     const BoardBundle placed{fitted.cameras, {*T}, fitted.warp};
-    for (const Eigen::Vector2d& r : residuals_px(placed, shape, alone)) squares.sum += r.squaredNorm();
+    for (const Eigen::Vector2d& r : residuals_px(placed, shape, alone)) lengths.push_back(r.norm());
   }
-  return squares;
+}
+
+HeldOutError summarise(std::vector<double> lengths) {
+  double squares = 0;
+  for (const double length : lengths) squares += length * length;
+  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+  std::nth_element(lengths.begin(), middle, lengths.end());
+  return {std::sqrt(squares / static_cast<double>(lengths.size())), *middle};
 }
 
 }  // namespace
@@ -51,10 +54,10 @@ std::optional<BundleFit> fit_camera(const CameraModel& model, const ImageExtent&
   return model.free_corners ? fit_corners(fit, shape, model.freedom(), options) : fit;
 }
 
-std::optional<double> held_out_rms_px(const CameraModel& model, const ImageExtent& image, const BoardShape& shape,
-                                      const std::vector<BundleView>& views, const BundleFitOptions& options,
-                                      int folds) {
-  SquareSum all;
+std::optional<HeldOutError> held_out_error(const CameraModel& model, const ImageExtent& image, const BoardShape& shape,
+                                           const std::vector<BundleView>& views, const BundleFitOptions& options,
+                                           int folds) {
+  std::vector<double> lengths;
   for (int fold = 0; fold < folds; ++fold) {
     std::vector<BundleView> training, held_out;
     for (std::size_t i = 0; i < views.size(); ++i) {
@@ -67,11 +70,9 @@ std::optional<double> held_out_rms_px(const CameraModel& model, const ImageExten
     if (training.size() < 3) return std::nullopt;
     const auto fit = fit_camera(model, image, shape, training, options);
     if (!fit) return std::nullopt;
-    const SquareSum squares = misfit_of(fit->bundle, shape, held_out);
-    all.sum += squares.sum;
-    all.count += squares.count;
+    add_misfit(fit->bundle, shape, held_out, lengths);
   }
-  return all.count == 0 ? std::nullopt : std::optional(std::sqrt(all.sum / all.count));
+  return lengths.empty() ? std::nullopt : std::optional(summarise(std::move(lengths)));
 }
 
 }  // namespace alidade

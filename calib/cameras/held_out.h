@@ -25,12 +25,20 @@ std::optional<BundleFit> fit_camera(const CameraModel& model, const ImageExtent&
 struct LensTrial {
   CameraModel model;
   double training_rms_px = 0;  ///< of the fit to all views, its own outliers left out
+  double held_out_median_px = 0;
   double held_out_rms_px = 0;  ///< of all corners of views that were left out, the board placed by each view alone
+};
+
+/// Lengths of residuals of all corners of views that were left out, the board placed by each view alone.
+struct HeldOutError {
+  double rms_px = 0;
+  double median_px = 0;
 };
 
 /// k-fold cross-validation: view i is held out in fold i mod `folds`. Empty where a fold has no fit or less than three
 /// views to fit.
-std::optional<double> held_out_rms_px(const CameraModel& model, const ImageExtent& image, const BoardShape& shape,
-                                      const std::vector<BundleView>& views, const BundleFitOptions& options, int folds);
+std::optional<HeldOutError> held_out_error(const CameraModel& model, const ImageExtent& image, const BoardShape& shape,
+                                           const std::vector<BundleView>& views, const BundleFitOptions& options,
+                                           int folds);
 
 }  // namespace alidade

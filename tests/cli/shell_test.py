@@ -30,7 +30,8 @@ class Shell(ProgramTest):
         for verb in verbs:
             text = self.assert_succeeds(*verb, "--help").stdout
             self.assertIn("Example:\n  alidade " + " ".join(verb), text)
-            output = "--output FILE" if verb == ["convert"] else "--output DIR"  # the one verb that writes one file
+            writes_one_file = verb in (["convert"], ["calibrate", "board"])
+            output = "--output FILE" if writes_one_file else "--output DIR"
             for flag in (output, "--quiet", "--json", "--seed", "--config FILE"):
                 self.assertIn(flag, text, verb)
 

@@ -13,15 +13,15 @@ namespace {
 constexpr ImageExtent kImage{640, 480};
 
 double held_out(LensModel lens, const test::SimulatedBundle& simulated) {
-  return held_out_rms_px(lens, kImage, simulated.shape, simulated.views, {}, 4).value();
+  return held_out_error({lens}, kImage, simulated.shape, simulated.views, {}, 4).value().rms_px;
 }
 
 TEST(FitCamera, NeedsNoStart) {
   const auto simulated = test::simulate_bundle(test::simulated_camera(LensModel::Fisheye), {.sigma_px = 1e-4}, 7);
-  const auto fit = fit_camera(LensModel::Fisheye, kImage, simulated.shape, simulated.views, {});
+  const auto fit = fit_camera({LensModel::Fisheye}, kImage, simulated.shape, simulated.views, {});
   ASSERT_TRUE(fit);
   EXPECT_LT(test::largest_difference_px(simulated.truth.cameras[0].camera, fit->bundle.cameras[0].camera), 1e-6);
-  EXPECT_FALSE(fit_camera(LensModel::Fisheye, kImage, simulated.shape, {}, {}));
+  EXPECT_FALSE(fit_camera({LensModel::Fisheye}, kImage, simulated.shape, {}, {}));
 }
 
 // Noise of s on each coordinate is s √2 long, a little less after six parameters of each view are fitted to its 108
@@ -48,9 +48,9 @@ TEST(HeldOutRms, CountsAViewWithoutAPlaceAsTenPixels) {
 
 TEST(HeldOutRms, IsEmptyWhereTooFewAreLeftToFit) {
   const auto simulated = test::simulate_bundle(test::simulated_camera(LensModel::Radial), {.views = 4}, 5);
-  EXPECT_TRUE(held_out_rms_px(LensModel::Radial, kImage, simulated.shape, simulated.views, {}, 4));
-  EXPECT_FALSE(held_out_rms_px(LensModel::Radial, kImage, simulated.shape, simulated.views, {}, 2));
-  EXPECT_FALSE(held_out_rms_px(LensModel::Radial, kImage, simulated.shape, {}, {}, 2));
+  EXPECT_TRUE(held_out_error({LensModel::Radial}, kImage, simulated.shape, simulated.views, {}, 4));
+  EXPECT_FALSE(held_out_error({LensModel::Radial}, kImage, simulated.shape, simulated.views, {}, 2));
+  EXPECT_FALSE(held_out_error({LensModel::Radial}, kImage, simulated.shape, {}, {}, 2));
 }
 
 }  // namespace

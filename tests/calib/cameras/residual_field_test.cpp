@@ -75,7 +75,7 @@ TEST(ResidualField, TellsALensOfTheWrongKind) {
   const auto simulated =
       test::simulate_bundle(test::simulated_camera(LensModel::Fisheye), {.views = 20, .noise_px = 0.05}, 4);
   const auto of = [&](LensModel lens) {
-    const auto fit = fit_camera(lens, {640, 480}, simulated.shape, simulated.views, {});
+    const auto fit = fit_camera({lens}, {640, 480}, simulated.shape, simulated.views, {});
     return residual_field(fit.value(), simulated.shape, 0);
   };
   EXPECT_FALSE(lens_fits(of(LensModel::Radial)));
