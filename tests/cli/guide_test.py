@@ -56,23 +56,23 @@ class Guide(ProgramTest):
         self.assertTrue(events[-1]["is_enough"])
 
     def test_of_a_film_takes_each_view_where_the_board_rests(self):
-        self.film("film", frames_per_image=12, images=3)
+        self.film("film", frames_per_image=12, images=2)
         done = self.assert_succeeds("guide", "film", "--board", BOARD, "--stream", "-o", "out")
         events = [json.loads(line) for line in done.stdout.splitlines()]
         states = [event["state"] for event in events]
         self.assertEqual(states[:12], ["moving"] + 7 * ["still"] + ["accepted"] + 3 * ["repeated"])
-        self.assertEqual(states.count("accepted"), 3)
+        self.assertEqual(states.count("accepted"), 2)
         summary = self.summary("out")
         self.assertFalse(summary["is_enough"])
         self.assertIn("the views do not tell the focal length", summary["missing"])
         self.assertIn("the views are not enough yet: ", done.stderr)
 
     def test_refuses_films_without_a_still_board(self):
-        self.film("film", frames_per_image=2, images=8)
+        self.film("film", frames_per_image=1, images=2)
         self.assert_refuses(["guide", "film", "--board", BOARD, "-o", "no", "--quiet"],
                             "^film: the board never rests for 0.3 s; hold it still after each move; ")
         self.assert_refuses(["guide", "film", "--board", "chessboard:7x5:25mm", "-o", "no", "--quiet"],
-                            "^film: no chessboard of 7x5 .* in any of 16 frames; check --board")
+                            "^film: no chessboard of 7x5 .* in any of 2 frames; check --board")
         self.assert_refuses(["guide", "film", "--board", BOARD, "--enough-px", 0, "-o", "no", "--quiet"],
                             "enough_px must be > 0 px, got 0")
         self.assertFalse((self.directory / "no").exists())
