@@ -82,8 +82,23 @@ void keep(Found& found, BoardImages& images) {
   images.images.push_back(std::move(image));
 }
 
+// Markers say which way round they are; a mirrored chessboard is as good a chessboard.
+bool is_mirrored(const std::vector<cv::Mat>& greys, const Board& board) {
+  if (board.kind == BoardKind::Chessboard) return false;
+  return std::any_of(greys.begin(), greys.end(), [&](const cv::Mat& grey) {
+    cv::Mat flipped;
+    cv::flip(grey, flipped, 1);
+    return detect_board(flipped, board).has_value();
+  });
+}
+
 [[noreturn]] void refuse_without_board(const BoardImages& images, const Board& board) {
-  const auto other = guess_board(first_images(images.source));
+  const std::vector<cv::Mat> greys = first_images(images.source);
+  if (is_mirrored(greys, board)) {
+    throw InputError(images.source, 0, fmt::format("the images show a mirrored {}", describe(board)),
+                     "switch off the mirroring of the camera or of the program that took them");
+  }
+  const auto other = guess_board(greys);
   const std::size_t count = images.images.size();
   std::string remedy = "check that the whole board is in the image, sharp and evenly lit";
   if (other && !(other->board == board)) {

@@ -6,8 +6,8 @@
 
 #include <opencv2/core/mat.hpp>
 
-#include "calib/cameras/bundle_fit.h"
-#include "calib/cameras/projection_uncertainty.h"
+#include "calib/bundle/bundle_fit.h"
+#include "calib/bundle/projection_uncertainty.h"
 #include "calib/cameras/residual_field.h"
 #include "view/plot.h"
 

@@ -9,9 +9,9 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "app/board_images.h"
+#include "calib/bundle/projection_uncertainty.h"
 #include "calib/cameras/camera_calibration.h"
 #include "calib/cameras/opencv_calibration.h"
-#include "calib/cameras/projection_uncertainty.h"
 #include "view/report.h"
 
 namespace alidade {

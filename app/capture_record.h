@@ -9,7 +9,7 @@
 
 #include "app/result_directory.h"
 #include "calib/boards/board.h"
-#include "calib/cameras/capture_guide.h"
+#include "calib/guide/capture_guide.h"
 #include "core/time.h"
 #include "view/report.h"
 

@@ -8,8 +8,8 @@
 
 #include "app/camera_calibration_run.h"
 #include "app/rig_moments.h"
-#include "calib/cameras/clock_offset.h"
-#include "calib/cameras/rig_calibration.h"
+#include "calib/clocks/clock_offset.h"
+#include "calib/rigs/rig_calibration.h"
 #include "camera/camera_rig.h"
 
 namespace alidade {

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "calib/cameras/synchronised_views.h"
 #include "calib/cameras/view_selection.h"
+#include "calib/clocks/synchronised_views.h"
 #include "core/errors.h"
 
 namespace alidade {

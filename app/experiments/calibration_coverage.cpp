@@ -10,8 +10,8 @@
 #include "app/board_simulation.h"
 #include "app/experiments/calibration_experiment.h"
 #include "calib/boards/board_detection.h"
+#include "calib/bundle/projection_uncertainty.h"
 #include "calib/cameras/camera_calibration.h"
-#include "calib/cameras/projection_uncertainty.h"
 
 namespace alidade {
 namespace {

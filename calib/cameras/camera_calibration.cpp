@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "calib/cameras/projection_uncertainty.h"
+#include "calib/bundle/projection_uncertainty.h"
 #include "calib/cameras/view_diversity.h"
 
 namespace alidade {

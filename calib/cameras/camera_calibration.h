@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "calib/boards/board_view.h"
-#include "calib/cameras/bundle_covariance.h"
+#include "calib/bundle/bundle_covariance.h"
 #include "calib/cameras/held_out.h"
 #include "calib/cameras/residual_field.h"
 #include "core/progress.h"

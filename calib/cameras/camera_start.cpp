@@ -7,7 +7,7 @@
 
 #include <opencv2/calib3d.hpp>
 
-#include "calib/cameras/board_placement.h"
+#include "calib/bundle/board_placement.h"
 
 namespace alidade {
 namespace {
@@ -103,7 +103,7 @@ std::optional<CameraStart> start_camera_bundle(LensModel lens, const ImageExtent
   BundleFreedom few;  // focal lengths and the strongest coefficient first: from afar, more would overfit
   few.intrinsics = {{0, 1, 4}};
   few.warp = false;
-  start.bundle = solve_bundle(std::move(start.bundle), shape, start.views, few, 30).bundle;
+  start.bundle = solve_bundle(std::move(start.bundle), shape, start.views, few, {30}).bundle;
   return start;
 }
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-#include "calib/cameras/board_bundle.h"
+#include "calib/bundle/board_bundle.h"
 #include "calib/cameras/lens_model.h"
 
 namespace alidade {

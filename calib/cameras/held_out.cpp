@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/cameras/board_placement.h"
+#include "calib/bundle/board_placement.h"
 
 namespace alidade {
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "calib/cameras/bundle_fit.h"
+#include "calib/bundle/bundle_fit.h"
 #include "calib/cameras/camera_start.h"
 
 namespace alidade {

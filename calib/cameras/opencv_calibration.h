@@ -5,7 +5,7 @@
 #include <span>
 
 #include "calib/boards/board_view.h"
-#include "calib/cameras/board_bundle.h"
+#include "calib/bundle/board_bundle.h"
 #include "calib/cameras/camera_start.h"
 
 namespace alidade {

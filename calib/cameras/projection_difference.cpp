@@ -5,7 +5,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "calib/cameras/projection_uncertainty.h"
+#include "calib/bundle/projection_uncertainty.h"
 #include "geometry/rotation.h"
 
 namespace alidade {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "calib/cameras/bundle_fit.h"
+#include "calib/bundle/bundle_fit.h"
 
 namespace alidade {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "calib/cameras/board_bundle.h"
+#include "calib/bundle/board_bundle.h"
 
 namespace alidade {
 

@@ -5,7 +5,7 @@
 
 #include "app/rig_moments.h"
 #include "core/errors.h"
-#include "tests/calib/cameras/simulated_films.h"
+#include "tests/calib/simulated_films.h"
 
 namespace alidade {
 namespace {

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "tests/calib/cameras/simulated_views.h"
+#include "tests/calib/simulated_views.h"
 #include "tests/geometry/random_geometry.h"
 
 namespace alidade {

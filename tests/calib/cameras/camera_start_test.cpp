@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "calib/cameras/bundle_fit.h"
-#include "tests/calib/cameras/simulated_views.h"
+#include "calib/bundle/bundle_fit.h"
+#include "tests/calib/simulated_views.h"
 
 namespace alidade {
 namespace {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "calib/cameras/camera_calibration.h"
-#include "tests/calib/cameras/simulated_views.h"
+#include "tests/calib/simulated_views.h"
 
 namespace alidade {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/calib/cameras/simulated_views.h"
+#include "tests/calib/simulated_views.h"
 
 namespace alidade {
 namespace {
