@@ -24,7 +24,7 @@ struct CameraCalibrationOptions {
                                   ///< times the least
   double repeated_view_px = 1.0;  ///< views whose corners lie closer than this show nothing new
   double least_tilt_deg = 8.0;    ///< between two boards: below it the focal length is a guess
-  double worst_focal_sigma = 0.02;  ///< standard deviation of fx (a share of it) above which there is no result
+  double worst_focal_sigma = 0.05;  ///< standard deviation of fx (a share of it) above which there is no result
   BundleFitOptions fit;
 };
 

@@ -4,4 +4,5 @@
 from figure_topics import calibration, camera_tracker, main_job, marker1d, marker1d_recordings, marker1d_use
 
 TOPICS = {"main-job": main_job.SECTIONS, "camera-tracker": camera_tracker.SECTIONS,
-          "marker1d": [*marker1d.SECTIONS, *marker1d_recordings.SECTIONS, *marker1d_use.SECTIONS], "calibration": calibration.SECTIONS}
+          "marker1d": [*marker1d.SECTIONS, *marker1d_recordings.SECTIONS, *marker1d_use.SECTIONS],
+          "calibration": calibration.SECTIONS}
