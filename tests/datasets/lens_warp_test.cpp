@@ -10,7 +10,7 @@ namespace alidade {
 namespace {
 
 Camera lens(double k1, double k2) {
-  Camera camera{320, 240, 250, 260, 170.3, 112.6, {k1, k2, 0.002, -0.001, 0}};
+  Camera camera{320, 240, 250, 260, 170.3, 112.6, BrownConrady{k1, k2, 0.002, -0.001, 0}};
   return camera;
 }
 

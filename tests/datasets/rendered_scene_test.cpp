@@ -83,7 +83,7 @@ TEST(RenderedScene, PicturesDepthsAndTruthAgreeThroughADistortingLens) {
 
 TEST(RenderedScene, MarkerIsSeenWhereItIsSaidToBe) {
   RenderedSceneOptions options = small();
-  options.camera = {640, 480, 520, 510, 310.2, 245.9, {-0.1, 0.02, 0, 0, 0}};
+  options.camera = {640, 480, 520, 510, 310.2, 245.9, BrownConrady{-0.1, 0.02, 0, 0, 0}};
   options.marker_m = 0.2;
   options.supersampling = 2;
   RenderedScene scene(options);
