@@ -2,6 +2,7 @@
 #include "calib/boards/chessboard_finder.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <stdexcept>
 #include <tuple>
@@ -45,13 +46,54 @@ std::vector<int> search_sides(const cv::Mat& grey) {
   return {first, first / 2, std::min(2 * first, std::max(longest, kMostSide))};
 }
 
+// The centre of a square, of those around the inner corners, too: there by the step before.
+Vector2d square_centre(const NodeRectangle& r, int column, int row) {
+  const auto corner = [&](int x, int y) {
+    const int inner_x = std::clamp(x, 0, r.columns - 1), inner_y = std::clamp(y, 0, r.rows - 1);
+    const int back_x = std::clamp(2 * inner_x - x, 0, r.columns - 1),
+              back_y = std::clamp(2 * inner_y - y, 0, r.rows - 1);
+    return Vector2d(2 * r.pixels[inner_y * r.columns + inner_x] - r.pixels[back_y * r.columns + back_x]);
+  };
+  return 0.25 * (corner(column, row) + corner(column + 1, row) + corner(column, row + 1) + corner(column + 1, row + 1));
+}
+
+// Grey about a place; empty outside the image.
+std::optional<double> brightness_at(const cv::Mat& grey, const Vector2d& place) {
+  const cv::Rect patch(cvRound(place.x()) - 1, cvRound(place.y()) - 1, 3, 3);
+  if ((patch & cv::Rect({}, grey.size())) != patch) return std::nullopt;
+  return cv::mean(grey(patch))[0];
+}
+
+// Do squares side by side, those around the inner corners included, differ by as much in turns? Where chance lines
+// saddle points up, they do not.
+bool is_chequered(const cv::Mat& grey, const NodeRectangle& rectangle) {
+  constexpr double kLeastCorrelation = 0.75;  // of differences with the pattern: reflections and hands hide some
+  double sum = 0, sum_of_squares = 0, count = 0;
+  const auto compare = [&](int column, int row, const cv::Point& step) {
+    if (column + step.x >= rectangle.columns || row + step.y >= rectangle.rows) return;
+    const auto here = brightness_at(grey, square_centre(rectangle, column, row));
+    const auto next = brightness_at(grey, square_centre(rectangle, column + step.x, row + step.y));
+    if (!here || !next) return;
+    const double difference = *here - *next;
+    sum += (column + row) % 2 == 0 ? difference : -difference;
+    sum_of_squares += difference * difference;
+    ++count;
+  };
+  for (int row = -1; row < rectangle.rows; ++row) {
+    for (int column = -1; column < rectangle.columns; ++column) {
+      compare(column, row, {1, 0});
+      compare(column, row, {0, 1});
+    }
+  }
+  return std::abs(sum) >= kLeastCorrelation * std::sqrt(count * sum_of_squares);
+}
+
 std::vector<ChessboardGrid> find_grids(const cv::Mat& grey, int longest_side) {
-  constexpr int kMostOutside = 3;  // nodes that chance adds to a board's lattice
   const ScaledImage image = scale_to(grey, longest_side);
   std::vector<ChessboardGrid> grids;
   for (const Lattice& lattice : grow_lattices(find_saddle_points(image.grey))) {
-    auto rectangle = whole_rectangle(lattice, kMostOutside);
-    if (!rectangle) continue;
+    auto rectangle = whole_rectangle(lattice);
+    if (!rectangle || !is_chequered(image.grey, *rectangle)) continue;
     ChessboardGrid& grid = grids.emplace_back(rectangle->columns, rectangle->rows, std::move(rectangle->pixels));
     for (Vector2d& corner : grid.corners) corner = image.original(corner);
   }
@@ -137,9 +179,11 @@ std::optional<ChessboardGrid> find_chessboard(const cv::Mat& grey, int columns, 
 }
 
 std::optional<ChessboardGrid> guess_chessboard(const cv::Mat& grey) {
+  constexpr std::size_t kLeastCorners = 12;  // texture and noise line up nine by chance
   check(grey, "guess_chessboard");
   for (const int side : search_sides(grey)) {
-    const auto grids = find_grids(grey, side);
+    auto grids = find_grids(grey, side);
+    std::erase_if(grids, [](const ChessboardGrid& g) { return g.corners.size() < kLeastCorners; });
     if (grids.empty()) continue;
     const ChessboardGrid& grid = *std::ranges::max_element(grids, {}, [](const auto& g) { return g.corners.size(); });
     return ordered(grey, grid.columns < grid.rows ? transposed(grid) : grid);

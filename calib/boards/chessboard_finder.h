@@ -28,8 +28,9 @@ struct ChessboardGrid {
 /// grow_lattices, in the image at several sizes.
 std::optional<ChessboardGrid> find_chessboard(const cv::Mat& grey, int columns, int rows);
 
-/// The same without being told the size; columns >= rows, as which way the print is meant to lie nobody sees. What is
-/// half hidden may be taken for a smaller board: ask several images, then most_common_size.
+/// The same without being told the size; columns >= rows, as which way the print is meant to lie nobody sees. Empty
+/// for fewer than 12 corners, which chance lines up, too. What is half hidden may be taken for a smaller board: ask
+/// several images, then most_common_size.
 std::optional<ChessboardGrid> guess_chessboard(const cv::Mat& grey);
 
 struct GridSize {

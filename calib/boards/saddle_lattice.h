@@ -33,7 +33,8 @@ struct NodeRectangle {
 };
 
 /// The rectangle that is left where the line at the border that lacks most nodes is taken away until none lacks any;
-/// empty where less than 3x3 is left. `most_outside`: it is empty too if more nodes than this were taken away.
-std::optional<NodeRectangle> whole_rectangle(const Lattice& lattice, int most_outside);
+/// empty where less than 3x3 is left, or where such a line has more nodes than chance would add to a board's: two
+/// fifths.
+std::optional<NodeRectangle> whole_rectangle(const Lattice& lattice);
 
 }  // namespace alidade

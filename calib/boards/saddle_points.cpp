@@ -19,7 +19,7 @@ using Eigen::Vector2d;
 constexpr double kPi = std::numbers::pi;
 constexpr double kSmoothing_px = 1.2;
 constexpr float kLeastStrength = 1;  // grey levels / px²: two edges of 5 levels
-constexpr std::size_t kMostPeaks = 5000;
+constexpr std::size_t kMostPeaks = 3000;
 // The wider, the truer the directions; the closer, the smaller the squares may be.
 constexpr std::array<double, 4> kRadii_px{2.8, 4.2, 6, 9};
 constexpr int kFarthest_px = 4;             // of a saddle from the peak

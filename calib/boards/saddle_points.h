@@ -18,7 +18,7 @@ struct SaddlePoint {
   double strength = 0;  ///< root of -det of the smoothed image's Hessian, grey levels / px²
 };
 
-/// The saddle points of a grey image of 8 bits, strongest first, of no more than 5000 candidates. Edges must be sharp
+/// The saddle points of a grey image of 8 bits, strongest first, of no more than 3000 candidates. Edges must be sharp
 /// to about 3 px and squares wider than 4: search a larger or a smaller image for others. Throws std::invalid_argument
 /// for another type of image. Source: maxima of -det of the Hessian, kept where rings of pixels about them turn from
 /// bright to dark and back twice, as in Bennett and Lasenby, "ChESS" (2014).

@@ -41,7 +41,7 @@ std::vector<SaddlePoint> saddle_points_of_board() {
 TEST(SaddleLattice, FollowsABentBoardRowByRow) {
   const auto lattices = grow_lattices(saddle_points_of_board());
   ASSERT_EQ(lattices.size(), 1u);
-  const auto rectangle = whole_rectangle(lattices[0], 0);
+  const auto rectangle = whole_rectangle(lattices[0]);
   ASSERT_TRUE(rectangle);
   EXPECT_EQ(rectangle->columns, kColumns);
   EXPECT_EQ(rectangle->rows, kRows);
@@ -97,20 +97,34 @@ Lattice full_lattice(int columns, int rows) {
 TEST(WholeRectangle, TakesAwayWhatLiesOutside) {
   auto lattice = full_lattice(6, 4);
   lattice.push_back({4, 2, Vector2d(6, 1)});
-  EXPECT_FALSE(whole_rectangle(lattice, 0));
-  const auto rectangle = whole_rectangle(lattice, 1);
+  const auto rectangle = whole_rectangle(lattice);
   ASSERT_TRUE(rectangle);
   EXPECT_EQ(rectangle->columns, 6);
   EXPECT_EQ(rectangle->rows, 4);
   EXPECT_EQ(rectangle->pixels[7], Vector2d(1, 1));
 }
 
+TEST(WholeRectangle, IsEmptyWhereALineIsHalfThere) {
+  auto lattice = full_lattice(6, 4);
+  lattice.pop_back();
+  lattice.pop_back();
+  EXPECT_FALSE(whole_rectangle(lattice));
+}
+
+TEST(WholeRectangle, IsEmptyWhereAStepIsUneven) {
+  auto lattice = full_lattice(6, 4);
+  lattice[8].pixel.x() += 0.15;
+  EXPECT_TRUE(whole_rectangle(lattice));
+  lattice[8].pixel.x() += 0.1;
+  EXPECT_FALSE(whole_rectangle(lattice));
+}
+
 TEST(WholeRectangle, IsEmptyWhereNoneIsLeft) {
-  EXPECT_FALSE(whole_rectangle({}, 9));
-  EXPECT_FALSE(whole_rectangle(full_lattice(9, 2), 9));
+  EXPECT_FALSE(whole_rectangle({}));
+  EXPECT_FALSE(whole_rectangle(full_lattice(9, 2)));
   auto holed = full_lattice(3, 3);
   holed.erase(holed.begin() + 4);
-  EXPECT_FALSE(whole_rectangle(holed, 9));
+  EXPECT_FALSE(whole_rectangle(holed));
 }
 
 }  // namespace
