@@ -2,61 +2,102 @@
 #include "calib/boards/chessboard_finder.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <stdexcept>
 #include <tuple>
 
 #include <Eigen/LU>
 #include <fmt/format.h>
-#include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
+
+#include "calib/boards/saddle_lattice.h"
+#include "calib/boards/saddle_points.h"
 
 namespace alidade {
 namespace {
 
 using Eigen::Vector2d;
 
-// Longer sides of the image that is searched: corners are found better and faster there than in 20 megapixels.
-constexpr int kSearchSide = 1000, kGuessSide = 640;
+// Of the image that is searched first: corners are found better and faster there than in 20 megapixels.
+constexpr int kSearchSide = 1000;
 
-struct ReducedImage {
+struct ScaledImage {
   cv::Mat grey;
   double pixels_per_pixel = 1;  // of the original, along a side
 
-  Vector2d original(const cv::Point2f& p) const { return pixels_per_pixel * (Vector2d(p.x, p.y).array() + 0.5) - 0.5; }
+  Vector2d original(const Vector2d& p) const { return pixels_per_pixel * (p.array() + 0.5) - 0.5; }
 };
 
-ReducedImage reduce(const cv::Mat& grey, int longest_side) {
+ScaledImage scale_to(const cv::Mat& grey, int longest_side) {
+  ScaledImage scaled;
+  scaled.pixels_per_pixel = static_cast<double>(std::max(grey.cols, grey.rows)) / longest_side;
+  const double scale = 1 / scaled.pixels_per_pixel;
+  cv::resize(grey, scaled.grey, {}, scale, scale, scale < 1 ? cv::INTER_AREA : cv::INTER_CUBIC);
+  return scaled;
+}
+
+// Longest sides of the images that are searched in turn: as most boards are found; for blurred ones; for small ones.
+std::vector<int> search_sides(const cv::Mat& grey) {
+  constexpr int kMostSide = 2000;
   const int longest = std::max(grey.cols, grey.rows);
-  if (longest <= longest_side) return {grey};
-  ReducedImage reduced;
-  reduced.pixels_per_pixel = static_cast<double>(longest) / longest_side;
-  const double scale = 1 / reduced.pixels_per_pixel;
-  cv::resize(grey, reduced.grey, {}, scale, scale, cv::INTER_AREA);
-  return reduced;
+  const int first = std::min(longest, kSearchSide);
+  return {first, first / 2, std::min(2 * first, std::max(longest, kMostSide))};
 }
 
-ChessboardGrid original_grid(const ReducedImage& image, const cv::Size& size, const std::vector<cv::Point2f>& found) {
-  ChessboardGrid grid{size.width, size.height, {}};
-  for (const cv::Point2f& p : found) grid.corners.push_back(image.original(p));
-  return grid;
+// The centre of a square, of those around the inner corners, too: there by the step before.
+Vector2d square_centre(const NodeRectangle& r, int column, int row) {
+  const auto corner = [&](int x, int y) {
+    const int inner_x = std::clamp(x, 0, r.columns - 1), inner_y = std::clamp(y, 0, r.rows - 1);
+    const int back_x = std::clamp(2 * inner_x - x, 0, r.columns - 1),
+              back_y = std::clamp(2 * inner_y - y, 0, r.rows - 1);
+    return Vector2d(2 * r.pixels[inner_y * r.columns + inner_x] - r.pixels[back_y * r.columns + back_x]);
+  };
+  return 0.25 * (corner(column, row) + corner(column + 1, row) + corner(column, row + 1) + corner(column + 1, row + 1));
 }
 
-using Search = bool (*)(const cv::Mat& grey, const cv::Size& size, std::vector<cv::Point2f>& corners);
-
-bool search_squares(const cv::Mat& grey, const cv::Size& size, std::vector<cv::Point2f>& corners) {
-  return cv::findChessboardCorners(grey, size, corners, cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE);
+// Grey about a place; empty outside the image.
+std::optional<double> brightness_at(const cv::Mat& grey, const Vector2d& place) {
+  const cv::Rect patch(cvRound(place.x()) - 1, cvRound(place.y()) - 1, 3, 3);
+  if ((patch & cv::Rect({}, grey.size())) != patch) return std::nullopt;
+  return cv::mean(grey(patch))[0];
 }
 
-bool search_crossings(const cv::Mat& grey, const cv::Size& size, std::vector<cv::Point2f>& corners) {
-  return cv::findChessboardCornersSB(grey, size, corners, cv::CALIB_CB_NORMALIZE_IMAGE);
+// Do squares side by side, those around the inner corners included, differ by as much in turns? Where chance lines
+// saddle points up, they do not.
+bool is_chequered(const cv::Mat& grey, const NodeRectangle& rectangle) {
+  constexpr double kLeastCorrelation = 0.75;  // of differences with the pattern: reflections and hands hide some
+  double sum = 0, sum_of_squares = 0, count = 0;
+  const auto compare = [&](int column, int row, const cv::Point& step) {
+    if (column + step.x >= rectangle.columns || row + step.y >= rectangle.rows) return;
+    const auto here = brightness_at(grey, square_centre(rectangle, column, row));
+    const auto next = brightness_at(grey, square_centre(rectangle, column + step.x, row + step.y));
+    if (!here || !next) return;
+    const double difference = *here - *next;
+    sum += (column + row) % 2 == 0 ? difference : -difference;
+    sum_of_squares += difference * difference;
+    ++count;
+  };
+  for (int row = -1; row < rectangle.rows; ++row) {
+    for (int column = -1; column < rectangle.columns; ++column) {
+      compare(column, row, {1, 0});
+      compare(column, row, {0, 1});
+    }
+  }
+  return std::abs(sum) >= kLeastCorrelation * std::sqrt(count * sum_of_squares);
 }
 
-std::optional<ChessboardGrid> find_at(const ReducedImage& image, const cv::Size& size, Search search) {
-  std::vector<cv::Point2f> corners;
-  if (!search(image.grey, size, corners)) return std::nullopt;
-  return original_grid(image, size, corners);
+std::vector<ChessboardGrid> find_grids(const cv::Mat& grey, int longest_side) {
+  const ScaledImage image = scale_to(grey, longest_side);
+  std::vector<ChessboardGrid> grids;
+  for (const Lattice& lattice : grow_lattices(find_saddle_points(image.grey))) {
+    auto rectangle = whole_rectangle(lattice);
+    if (!rectangle || !is_chequered(image.grey, *rectangle)) continue;
+    ChessboardGrid& grid = grids.emplace_back(rectangle->columns, rectangle->rows, std::move(rectangle->pixels));
+    for (Vector2d& corner : grid.corners) corner = image.original(corner);
+  }
+  return grids;
 }
 
 ChessboardGrid transposed(const ChessboardGrid& grid) {
@@ -128,28 +169,26 @@ std::optional<ChessboardGrid> find_chessboard(const cv::Mat& grey, int columns, 
   if (columns < 3 || rows < 3) {
     throw std::invalid_argument(fmt::format("find_chessboard: at least 3x3 corners, got {}x{}", columns, rows));
   }
-  const cv::Size size(columns, rows);
-  const ReducedImage reduced = reduce(grey, kSearchSide);
-  // Squares first: five times as fast as crossings where the board is there. On the recordings each finds what the
-  // other misses.
-  auto found = find_at(reduced, size, search_squares);
-  if (!found) found = find_at(reduced, size, search_crossings);
-  if (!found && reduced.pixels_per_pixel > 1) found = find_at({grey}, size, search_squares);
-  if (!found) return std::nullopt;
-  return ordered(grey, *found);
+  for (const int side : search_sides(grey)) {
+    for (const ChessboardGrid& grid : find_grids(grey, side)) {
+      if (grid.columns == columns && grid.rows == rows) return ordered(grey, grid);
+      if (grid.columns == rows && grid.rows == columns) return ordered(grey, transposed(grid));
+    }
+  }
+  return std::nullopt;
 }
 
 std::optional<ChessboardGrid> guess_chessboard(const cv::Mat& grey) {
+  constexpr std::size_t kLeastCorners = 12;  // texture and noise line up nine by chance
   check(grey, "guess_chessboard");
-  const ReducedImage reduced = reduce(grey, kGuessSide);
-  std::vector<cv::Point2f> corners;
-  cv::Mat marks;  // one entry for each corner: its size is that of the grid
-  if (!cv::findChessboardCornersSB(reduced.grey, {3, 3}, corners, cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_LARGER,
-                                   marks)) {
-    return std::nullopt;
+  for (const int side : search_sides(grey)) {
+    auto grids = find_grids(grey, side);
+    std::erase_if(grids, [](const ChessboardGrid& g) { return g.corners.size() < kLeastCorners; });
+    if (grids.empty()) continue;
+    const ChessboardGrid& grid = *std::ranges::max_element(grids, {}, [](const auto& g) { return g.corners.size(); });
+    return ordered(grey, grid.columns < grid.rows ? transposed(grid) : grid);
   }
-  const ChessboardGrid grid = original_grid(reduced, marks.size(), corners);
-  return ordered(grey, grid.columns < grid.rows ? transposed(grid) : grid);
+  return std::nullopt;
 }
 
 std::optional<GridSize> most_common_size(std::span<const ChessboardGrid> grids) {

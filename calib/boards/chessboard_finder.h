@@ -24,12 +24,13 @@ struct ChessboardGrid {
 };
 
 /// The board of known size in a grey image of 8 bits, whole. Empty where it is not seen, or not all of it. Throws
-/// std::invalid_argument for another type of image or a side of less than 3. Source: OpenCV's findChessboardCorners;
-/// where that fails, findChessboardCornersSB (Duda and Frese 2018).
+/// std::invalid_argument for another type of image or a side of less than 3. Source: find_saddle_points and
+/// grow_lattices, in the image at several sizes.
 std::optional<ChessboardGrid> find_chessboard(const cv::Mat& grey, int columns, int rows);
 
-/// The same without being told the size; columns >= rows, as which way the print is meant to lie nobody sees. What is
-/// half hidden may be taken for a smaller board: ask several images, then most_common_size.
+/// The same without being told the size; columns >= rows, as which way the print is meant to lie nobody sees. Empty
+/// for fewer than 12 corners, which chance lines up, too. What is half hidden may be taken for a smaller board: ask
+/// several images, then most_common_size.
 std::optional<ChessboardGrid> guess_chessboard(const cv::Mat& grey);
 
 struct GridSize {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/boards/chessboard_finder.h"
 
+#include <utility>
+
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
@@ -75,6 +77,33 @@ TEST(ChessboardFinder, IsEmptyWithoutTheWholeBoard) {
   EXPECT_FALSE(find_chessboard(test::render(half), 6, 5));
   const auto larger = test::placed_chessboard(7, 6, {.square_px = 24});
   EXPECT_FALSE(find_chessboard(test::render(larger), 6, 5));
+}
+
+TEST(ChessboardFinder, FindsBoardsThatAreSmallSteepOrBlurred) {
+  const std::vector<test::BoardPlacement> placements{{.square_px = 6, .turn_rad = 0.3},
+                                                     {.square_px = 14, .turn_rad = 0.5, .tilt = {0.1, 0}}};
+  for (const auto& placement : placements) {
+    const auto board = test::placed_chessboard(9, 6, placement);
+    EXPECT_TRUE(find_chessboard(test::with_noise(test::render(board), 3, 1), 9, 6)) << placement.square_px;
+  }
+  const auto board = test::placed_chessboard(9, 6, {.square_px = 20, .turn_rad = 0.2});
+  EXPECT_TRUE(find_chessboard(test::with_noise(test::render(board, {4, 4}), 3, 1), 9, 6));
+}
+
+TEST(ChessboardFinder, TakesNeitherLargerNorSmallerBoardsForTheOneAsked) {
+  for (const auto& [columns, rows] :
+       {std::pair(7, 6), std::pair(7, 5), std::pair(6, 6), std::pair(5, 5), std::pair(6, 4)}) {
+    const auto image = test::render(test::placed_chessboard(columns, rows, {.square_px = 22, .turn_rad = 0.1}));
+    EXPECT_FALSE(find_chessboard(image, 6, 5)) << columns << "x" << rows;
+  }
+}
+
+TEST(ChessboardFinder, SeesNoBoardInNoise) {
+  for (int seed = 1; seed <= 3; ++seed) {
+    const auto image = test::with_noise(cv::Mat(240, 320, CV_8UC1, cv::Scalar(128)), 40, seed);
+    EXPECT_FALSE(find_chessboard(image, 4, 3)) << seed;
+    EXPECT_FALSE(guess_chessboard(image)) << seed;
+  }
 }
 
 TEST(ChessboardFinder, GuessesTheSize) {
