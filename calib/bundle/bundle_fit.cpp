@@ -97,9 +97,8 @@ BundleFit fit_bundle(const BoardBundle& start, const BoardShape& shape, std::vec
   constexpr int kFadingRounds = 2;
   for (int round = 0; round < options.most_rounds; ++round) {
     const bool is_first = round == 0;
-    // While weights still change a rough optimum will do; in the end one to a hundredth of a sigma.
-    const BundleSolverOptions accuracy =
-        round < kFadingRounds ? BundleSolverOptions{12, 1e-3} : BundleSolverOptions{100, 1e-8};
+    // While weights still change a rough optimum will do.
+    const BundleSolverOptions accuracy = round < kFadingRounds ? BundleSolverOptions{12, 1e-3} : BundleSolverOptions{};
     auto solution = solve_bundle(std::move(fit.bundle), shape, fit.views, freedom, accuracy);
     fit.bundle = std::move(solution.bundle);
     fit.iterations += solution.iterations;

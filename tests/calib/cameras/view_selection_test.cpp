@@ -43,9 +43,8 @@ TEST(SelectViews, TakesEachRestingPlaceOnce) {
 TEST(SelectViews, LeavesMovingBoardsWhereEnoughRest) {
   std::vector<BoardView> film;
   for (int place = 0; place < 12; ++place) {
-    film.push_back(view_at(3 * place, 40.0 * place));
-    film.push_back(view_at(3 * place + 1, 40.0 * place));
-    film.push_back(view_at(3 * place + 2, 40.0 * place + 20, 300));
+    for (int i = 0; i < 3; ++i) film.push_back(view_at(4 * place + i, 40.0 * place));
+    film.push_back(view_at(4 * place + 3, 40.0 * place + 20, 300));
   }
   for (const int i : select_views(film, kImage)) EXPECT_EQ(film[static_cast<std::size_t>(i)].corners[0].pixel.y(), 100);
 }
