@@ -9,23 +9,29 @@ namespace {
 
 bool show_the_same(const BundleView& a, const BundleView& b, double distance_px) {
   if (a.camera != b.camera) return false;
+  const CommonMotion motion = common_motion(a.corners, b.corners);
+  const auto smaller = static_cast<double>(std::min(a.corners.size(), b.corners.size()));
+  return motion.corners > 0 && motion.corners >= 0.8 * smaller && motion.rms_px < distance_px;
+}
+
+}  // namespace
+
+CommonMotion common_motion(std::span<const BoardCorner> from, std::span<const BoardCorner> to) {
+  CommonMotion motion;
   double sum = 0;
-  int count = 0;
-  for (auto i = a.corners.begin(), j = b.corners.begin(); i != a.corners.end() && j != b.corners.end();) {
+  for (auto i = from.begin(), j = to.begin(); i != from.end() && j != to.end();) {
     if (i->id < j->id) {
       ++i;
     } else if (j->id < i->id) {
       ++j;
     } else {
       sum += (i++->pixel - j++->pixel).squaredNorm();
-      ++count;
+      ++motion.corners;
     }
   }
-  const auto smaller = static_cast<double>(std::min(a.corners.size(), b.corners.size()));
-  return count > 0 && count >= 0.8 * smaller && std::sqrt(sum / count) < distance_px;
+  if (motion.corners > 0) motion.rms_px = std::sqrt(sum / motion.corners);
+  return motion;
 }
-
-}  // namespace
 
 std::vector<int> find_repeated_views(std::span<const BundleView> views, double distance_px) {
   std::vector<int> earlier(views.size(), -1);

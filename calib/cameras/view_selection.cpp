@@ -6,6 +6,8 @@
 #include <limits>
 #include <numeric>
 
+#include "calib/cameras/view_diversity.h"
+
 namespace alidade {
 namespace {
 
@@ -28,19 +30,8 @@ std::vector<double> speeds_px(std::span<const BoardView> views) {
 }  // namespace
 
 std::optional<double> view_motion_px(const BoardView& from, const BoardView& to) {
-  double sum = 0;
-  int count = 0;
-  for (auto i = from.corners.begin(), j = to.corners.begin(); i != from.corners.end() && j != to.corners.end();) {
-    if (i->id < j->id) {
-      ++i;
-    } else if (j->id < i->id) {
-      ++j;
-    } else {
-      sum += (i++->pixel - j++->pixel).squaredNorm();
-      ++count;
-    }
-  }
-  return count > 0 ? std::optional(std::sqrt(sum / count)) : std::nullopt;
+  const CommonMotion motion = common_motion(from.corners, to.corners);
+  return motion.corners > 0 ? std::optional(motion.rms_px) : std::nullopt;
 }
 
 std::vector<int> select_views(std::span<const BoardView> views, const ImageExtent& image,
