@@ -72,6 +72,7 @@ std::optional<Eigen::MatrixXd> inverse(const Eigen::MatrixXd& S) {
 }
 
 // `parameters`: those of all frames that a view shows and the shared ones.
+// Of one coordinate in units of the corners' sigma_px, each by its weight.
 double residual_sigma(const BundleFit& fit, const BoardShape& shape, int parameters) {
   double sum = 0;
   int count = 0;
@@ -79,7 +80,7 @@ double residual_sigma(const BundleFit& fit, const BoardShape& shape, int paramet
     const auto residuals = residuals_px(fit.bundle, shape, view);
     for (std::size_t i = 0; i < residuals.size(); ++i) {
       if (view.weights[i] <= 0) continue;
-      sum += residuals[i].squaredNorm() / std::pow(view.corners[i].sigma_px, 2);
+      sum += view.weights[i] * residuals[i].squaredNorm() / std::pow(view.corners[i].sigma_px, 2);
       count += 2;
     }
   }
