@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 #include <opencv2/core.hpp>
-#include <opencv2/imgproc.hpp>
 
 #include "calib/boards/edge_crossing.h"
 
@@ -61,17 +60,6 @@ Vector2d bend_along(const Lattice& lattice, int id, int right, int down) {
   return Vector2d::Zero();
 }
 
-Vector2d adjust_by_gradient(const cv::Mat& grey, const CrossingStart& start) {
-  const Vector2d& p = start.pixel;
-  const double spacing = std::min(start.step_x.norm(), start.step_y.norm());
-  const int fits = (std::min(grey.cols, grey.rows) - 5) / 2;  // what cornerSubPix insists on
-  const int half = std::min(fits, std::max(2, static_cast<int>(std::lround(start.half_width * spacing))));
-  if (half < 1 || p.minCoeff() < 0 || p.x() > grey.cols - 1 || p.y() > grey.rows - 1) return p;
-  std::vector<cv::Point2f> point{{static_cast<float>(p.x()), static_cast<float>(p.y())}};
-  cv::cornerSubPix(grey, point, {half, half}, {-1, -1}, {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 40, 1e-3});
-  return {point[0].x, point[0].y};
-}
-
 // On large squares every few pixels do to see where the crossing is and how blurred; then all pixels about it.
 std::optional<EdgeCrossing> fit_coarse_to_fine(const cv::Mat& grey, CrossingStart start, double most_half_width_px) {
   const double longest = std::max(start.step_x.norm(), start.step_y.norm());
@@ -92,7 +80,9 @@ BoardCorner refined(const cv::Mat& grey, int id, const CrossingStart& start, con
       return {id, crossing->pixel, std::max(sigma, options.least_sigma_px)};
     }
   }
-  return {id, adjust_by_gradient(grey, start), options.unfitted_sigma_px};
+  const double spacing = std::min(start.step_x.norm(), start.step_y.norm());
+  const int half_px = std::max(2, static_cast<int>(std::lround(start.half_width * spacing)));
+  return {id, crossing_by_gradients(grey, start.pixel, half_px), options.unfitted_sigma_px};
 }
 
 enum class Edges { Straight, Bent };
@@ -106,7 +96,6 @@ std::vector<BoardCorner> refine_once(const cv::Mat& grey, std::span<const BoardC
     if (!step_x || !step_y) continue;
     CrossingStart start{.pixel = corner.pixel, .step_x = *step_x, .step_y = *step_y};
     start.half_width = options.half_width;
-    start.band = options.band;
     if (edges == Edges::Bent) {
       start.bend_x = bend_along(lattice, corner.id, 1, 0);
       start.bend_y = bend_along(lattice, corner.id, 0, 1);
@@ -122,7 +111,6 @@ void validate(const CornerRefinementOptions& o) {
   if (!(o.half_width > 0 && o.half_width < 1)) {
     throw std::invalid_argument(fmt::format("half_width must lie between 0 and 1, got {}", o.half_width));
   }
-  if (!(o.band > 0)) throw std::invalid_argument(fmt::format("band must be > 0 squares, got {}", o.band));
   if (!(o.most_half_width_px >= 4)) {
     throw std::invalid_argument(fmt::format("most_half_width_px must be >= 4, got {}", o.most_half_width_px));
   }

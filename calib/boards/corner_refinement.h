@@ -14,9 +14,6 @@ struct CornerRefinementOptions {
   /// Of the window, in squares. On the recordings 0.3 and 0.4 serve equally well; from 0.6 on the window holds edges
   /// that the lens has bent away from where they cross, and the residuals grow by a tenth.
   double half_width = 0.4;
-  /// To either side of the edges, in squares: only pixels there are looked at. Less than half_width where squares carry
-  /// marks, as on ChArUco boards: the white about a marker less twice the blur.
-  double band = 1;
   /// Of the window on large squares, unless it then holds fewer than six blurs: from here on pixels cost time only.
   double most_half_width_px = 12;
   double least_sigma_px = 0.02;  ///< what a corner claims at best: print and glass are no better

@@ -6,8 +6,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include <opencv2/imgproc.hpp>
-
+#include "calib/boards/corner_refinement.h"
 #include "calib/boards/edge_crossing.h"
 
 namespace alidade {
@@ -30,36 +29,34 @@ double clear_half_width(const CrossingGuess& guess) {
   return guess.band * area / std::max(guess.step_x.lpNorm<1>(), guess.step_y.lpNorm<1>());
 }
 
-Vector2d adjust_by_gradient(const cv::Mat& grey, const CrossingGuess& guess) {
+int gradient_half_width(const CrossingGuess& guess) {
   constexpr int kLeast_px = 2, kMost_px = 12;
-  const int half = std::clamp(static_cast<int>(std::lround(clear_half_width(guess) - kBlur_px)), kLeast_px, kMost_px);
-  std::vector<cv::Point2f> point{{static_cast<float>(guess.pixel.x()), static_cast<float>(guess.pixel.y())}};
-  cv::cornerSubPix(grey, point, {half, half}, {-1, -1}, {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 40, 1e-3});
-  return {point[0].x, point[0].y};
+  return std::clamp(static_cast<int>(std::lround(clear_half_width(guess) - kBlur_px)), kLeast_px, kMost_px);
 }
 
 std::optional<RefinedCorner> fit(const cv::Mat& grey, const CrossingGuess& guess) {
-  constexpr double kMost_px = 12;  // of the window; both as CornerRefinementOptions has them
-  constexpr double kLeastSigma_px = 0.02;
+  const CornerRefinementOptions usual;
   const double step_px = std::min(guess.step_x.norm(), guess.step_y.norm());
   const double longest_px = std::max(guess.step_x.norm(), guess.step_y.norm());
   const double band = guess.band - kBlur_px / step_px;
   if (!(band * step_px > 0.5)) return std::nullopt;
-  const auto crossing = fit_edge_crossing(grey, {.pixel = guess.pixel,
-                                                 .step_x = guess.step_x,
-                                                 .step_y = guess.step_y,
-                                                 .half_width = std::min(1 - kBlur_px / step_px, kMost_px / longest_px),
-                                                 .band = band});
+  const auto crossing =
+      fit_edge_crossing(grey, {.pixel = guess.pixel,
+                               .step_x = guess.step_x,
+                               .step_y = guess.step_y,
+                               .half_width = std::min(1 - kBlur_px / step_px, usual.most_half_width_px / longest_px),
+                               .band = band});
   if (!crossing) return std::nullopt;
   const double sigma = std::sqrt(0.5 * crossing->covariance_px2.trace());
   if (!(sigma < kCrowdedSigma_px)) return std::nullopt;
-  return RefinedCorner{crossing->pixel, std::max(sigma, kLeastSigma_px)};
+  return RefinedCorner{crossing->pixel, std::max(sigma, usual.least_sigma_px)};
 }
 
 // Where the edges cross, or empty where that is too far away.
 std::optional<RefinedCorner> refine(const cv::Mat& grey, const CrossingGuess& guess) {
   auto refined = fit(grey, guess);
-  if (!refined) refined = RefinedCorner{adjust_by_gradient(grey, guess), kCrowdedSigma_px};
+  if (!refined)
+    refined = RefinedCorner{crossing_by_gradients(grey, guess.pixel, gradient_half_width(guess)), kCrowdedSigma_px};
   if (!((refined->pixel - guess.pixel).norm() <= guess.within_px)) return std::nullopt;
   return refined;
 }

@@ -10,6 +10,7 @@
 #include <Eigen/LU>
 #include <ceres/tiny_solver.h>
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 
 namespace alidade {
 namespace {
@@ -189,6 +190,15 @@ std::optional<EdgeCrossing> fit_edge_crossing(const cv::Mat& grey, const Crossin
                       .blur_px = {blur_of(x[kLogBlur1]), blur_of(x[kLogBlur2])},
                       .contrast = std::abs(x[kContrast]),
                       .noise = std::sqrt(variance)};
+}
+
+Eigen::Vector2d crossing_by_gradients(const cv::Mat& grey, const Eigen::Vector2d& pixel, int half_width_px) {
+  const int fits = (std::min(grey.cols, grey.rows) - 5) / 2;  // what cornerSubPix insists on
+  const int half = std::min(fits, half_width_px);
+  if (half < 1 || pixel.minCoeff() < 0 || pixel.x() > grey.cols - 1 || pixel.y() > grey.rows - 1) return pixel;
+  std::vector<cv::Point2f> point{{static_cast<float>(pixel.x()), static_cast<float>(pixel.y())}};
+  cv::cornerSubPix(grey, point, {half, half}, {-1, -1}, {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 40, 1e-3});
+  return {point[0].x, point[0].y};
 }
 
 }  // namespace alidade

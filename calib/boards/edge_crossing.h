@@ -41,4 +41,8 @@ struct EdgeCrossing {
 /// for another type of image.
 std::optional<EdgeCrossing> fit_edge_crossing(const cv::Mat& grey, const CrossingStart& start);
 
+/// Where the gradients about `pixel` say that edges cross, within `half_width_px` (cv::cornerSubPix): what is left
+/// where the fit fails. `pixel` itself where no window about it fits the image.
+Eigen::Vector2d crossing_by_gradients(const cv::Mat& grey, const Eigen::Vector2d& pixel, int half_width_px);
+
 }  // namespace alidade

@@ -165,6 +165,7 @@ void validate(const CameraCalibrationOptions& o) {
   require(o.repeated_view_px >= 0, fmt::format("repeated_view_px must be >= 0 px, got {}", o.repeated_view_px));
   require(o.least_tilt_deg >= 0, fmt::format("least_tilt_deg must be >= 0 deg, got {}", o.least_tilt_deg));
   require(o.worst_focal_sigma > 0, fmt::format("worst_focal_sigma must be > 0, got {}", o.worst_focal_sigma));
+  require(o.fit.least_sigma_px >= 0, fmt::format("least_sigma_px must be >= 0 px, got {}", o.fit.least_sigma_px));
   require(o.fit.outlier_sigmas >= 2, fmt::format("outlier_sigmas must be >= 2, got {}", o.fit.outlier_sigmas));
 }
 
@@ -221,8 +222,7 @@ std::string explain(const CameraCalibration& c) {
           given, c.distinct_views, c.distinct_views == 1 ? "s" : "");
     case Outcome::TooFewCorners:
       return fmt::format(
-          "{} corners in {} images do not suffice for the lens; take more images, or choose a lens of "
-          "fewer parameters (--lens radial)",
+          "{} corners in {} images do not suffice for the lens; take more images, with more of the board in them",
           used_corners(c.fit.views), c.distinct_views);
     case Outcome::NoTilt:
       return fmt::format(

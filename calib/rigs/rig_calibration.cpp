@@ -107,6 +107,10 @@ void judge(const BoardShape& shape, RigCalibration& rig) {
   rig.outcome = covariance ? Outcome::Calibrated : Outcome::Undetermined;
   if (!covariance) return;
   rig.covariance = *covariance;
+  for (const CameraCalibration& alone : rig.alone) {
+    rig.covariance.left_out = std::max(rig.covariance.left_out, alone.covariance.left_out);
+  }
+  rig.covariance.shared_and_motion *= rig.covariance.left_out;
   for (int c = 0; c < static_cast<int>(rig.fit.bundle.cameras.size()); ++c) {
     for (int first = 0; first < c; ++first) {
       if (const auto pair = pair_error(rig.fit, rig.freedom, rig.covariance, first, c)) rig.pairs.push_back(*pair);

@@ -110,5 +110,11 @@ TEST(EdgeCrossing, RefusesColour) {
   EXPECT_THROW(fit_edge_crossing(cv::Mat(80, 80, CV_8UC3), {}), std::invalid_argument);
 }
 
+TEST(CrossingByGradients, StaysWhereNoWindowFits) {
+  const cv::Mat grey(6, 40, CV_8UC1, cv::Scalar(90));
+  EXPECT_EQ(crossing_by_gradients(grey, {20, 3}, 5), Eigen::Vector2d(20, 3));
+  EXPECT_EQ(crossing_by_gradients(cv::Mat(40, 40, CV_8UC1, cv::Scalar(90)), {-1, 3}, 5), Eigen::Vector2d(-1, 3));
+}
+
 }  // namespace
 }  // namespace alidade
