@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <glob.h>
 
+#include "capture/frame_queue.h"
 #include "capture/image_names.h"
-#include "capture/read_ahead.h"
 #include "core/errors.h"
 #include "io/image_files.h"
 #include "io/natural_order.h"
@@ -26,7 +26,7 @@ class ImageFiles : public FrameSource {
   ImageFiles(std::vector<TimedImage> images, bool timed, std::string description)
       : images_(std::move(images)), timed_(timed), description_(std::move(description)) {}
 
-  std::optional<Frame> next() override {
+  std::optional<Frame> next(std::stop_token) override {
     if (next_ == images_.size()) return std::nullopt;
     const TimedImage& file = images_[next_];
     cv::Mat image = read_image(file.path);
@@ -135,7 +135,7 @@ std::unique_ptr<FrameSource> open_list(const fs::path& path, std::optional<doubl
 
 std::unique_ptr<FrameSource> open_images(std::vector<TimedImage> images, bool timed, const std::string& description) {
   if (images.empty()) throw InputError(description, 0, "no images", "");
-  return read_ahead(std::make_unique<ImageFiles>(std::move(images), timed, description));
+  return queued(std::make_unique<ImageFiles>(std::move(images), timed, description));
 }
 
 std::unique_ptr<FrameSource> open_files(const std::string& source, std::optional<double> fps_hz) {

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "capture/file_sources.h"
-#include "capture/read_ahead.h"
+#include "capture/frame_queue.h"
 #include "core/errors.h"
 #include "io/video_reader.h"
 
@@ -22,7 +22,7 @@ class Video : public FrameSource {
     if (!pending_) throw InputError(path, 0, "holds no frame that can be read", "record it again");
   }
 
-  std::optional<Frame> next() override {
+  std::optional<Frame> next(std::stop_token) override {
     if (!pending_) return std::nullopt;
     const int index = next_index_++;
     Frame frame{index, time_of(index), fmt::format("{}#{}", path_.filename().string(), index),
@@ -63,7 +63,7 @@ class Video : public FrameSource {
 
 std::unique_ptr<FrameSource> open_video(const std::filesystem::path& path, std::optional<double> fps_hz) {
   if (fps_hz && !(*fps_hz > 0 && std::isfinite(*fps_hz))) throw std::invalid_argument("open_video: fps_hz must be > 0");
-  return read_ahead(std::make_unique<Video>(path, fps_hz));
+  return queued(std::make_unique<Video>(path, fps_hz));
 }
 
 }  // namespace alidade

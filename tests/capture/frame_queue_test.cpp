@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "capture/read_ahead.h"
+#include "capture/frame_queue.h"
 
 #include <atomic>
 #include <chrono>
@@ -16,7 +16,7 @@ namespace {
 class Counter : public FrameSource {
  public:
   Counter(int count, bool broken, std::atomic<int>* given) : count_(count), broken_(broken), given_(given) {}
-  std::optional<Frame> next() override {
+  std::optional<Frame> next(std::stop_token) override {
     if (next_ == count_ && broken_) throw InputError("frame.jpg", 0, "damaged", "");
     if (next_ == count_) return std::nullopt;
     ++*given_;
@@ -34,9 +34,9 @@ class Counter : public FrameSource {
   int next_ = 0;
 };
 
-TEST(ReadAhead, KeepsTheOrderAndTheFacts) {
+TEST(FrameQueue, KeepsTheOrderAndTheFacts) {
   std::atomic<int> given = 0;
-  const auto source = read_ahead(std::make_unique<Counter>(100, false, &given), 3);
+  const auto source = queued(std::make_unique<Counter>(100, false, &given), {3});
   EXPECT_EQ(source->frame_count(), 100);
   EXPECT_TRUE(source->has_times());
   EXPECT_EQ(source->describe(), "a counter");
@@ -50,18 +50,18 @@ TEST(ReadAhead, KeepsTheOrderAndTheFacts) {
   EXPECT_EQ(source->fault(), "cut off");
 }
 
-TEST(ReadAhead, ThrowsInTheirPlaceTheErrorsOfTheSource) {
+TEST(FrameQueue, ThrowsInTheirPlaceTheErrorsOfTheSource) {
   std::atomic<int> given = 0;
-  const auto source = read_ahead(std::make_unique<Counter>(5, true, &given), 3);
+  const auto source = queued(std::make_unique<Counter>(5, true, &given), {3});
   for (int i = 0; i < 5; ++i) ASSERT_TRUE(source->next());
   EXPECT_THROW(source->next(), InputError);
   EXPECT_FALSE(source->next());
 }
 
-TEST(ReadAhead, StopsAtItsCapacityAndWhenItDies) {
+TEST(FrameQueue, StopsAtItsCapacityAndWhenItDies) {
   std::atomic<int> given = 0;
   {
-    const auto source = read_ahead(std::make_unique<Counter>(1000, false, &given), 4);
+    const auto source = queued(std::make_unique<Counter>(1000, false, &given), {4});
     ASSERT_TRUE(source->next());
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
     EXPECT_LE(given, 6);  // one taken, four queued, one waiting for room
@@ -69,10 +69,10 @@ TEST(ReadAhead, StopsAtItsCapacityAndWhenItDies) {
   EXPECT_LE(given, 6);
 }
 
-TEST(ReadAhead, NeedsASourceAndRoom) {
+TEST(FrameQueue, NeedsASourceAndRoom) {
   std::atomic<int> given = 0;
-  EXPECT_THROW(read_ahead(nullptr), std::invalid_argument);
-  EXPECT_THROW(read_ahead(std::make_unique<Counter>(1, false, &given), 0), std::invalid_argument);
+  EXPECT_THROW(queued(nullptr), std::invalid_argument);
+  EXPECT_THROW(queued(std::make_unique<Counter>(1, false, &given), {0}), std::invalid_argument);
 }
 
 }  // namespace
