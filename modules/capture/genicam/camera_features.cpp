@@ -173,9 +173,17 @@ bool is_writable(ArvGcNode* node) {
 }  // namespace
 
 std::vector<std::string> feature_names(ArvDevice* device) {
+  ArvGc* const description = arv_device_get_genicam(device);
   std::set<std::string> seen;
   std::vector<std::string> names;
-  collect(arv_device_get_genicam(device), "Root", seen, names);
+  collect(description, "Root", seen, names);
+  // Some descriptions leave a category out of the root.
+  ArvDomNode* at = ARV_DOM_NODE(arv_dom_document_get_document_element(ARV_DOM_DOCUMENT(description)));
+  for (at = arv_dom_node_get_first_child(at); at; at = arv_dom_node_get_next_sibling(at)) {
+    if (ARV_IS_GC_CATEGORY(at)) {
+      collect(description, arv_gc_feature_node_get_name(ARV_GC_FEATURE_NODE(at)), seen, names);
+    }
+  }
   return names;
 }
 
