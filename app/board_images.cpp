@@ -8,11 +8,11 @@
 #include <opencv2/imgproc.hpp>
 #include <tbb/parallel_for.h>
 
+#include "app/frame_sources.h"
 #include "calib/boards/board_detection.h"
 #include "calib/boards/board_guess.h"
 #include "calib/boards/board_text.h"
 #include "calib/cameras/view_selection.h"
-#include "app/frame_sources.h"
 #include "capture/file_sources.h"
 #include "core/errors.h"
 

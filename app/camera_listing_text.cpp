@@ -13,8 +13,8 @@ std::string text_of(cv::Size size) {
 }
 
 std::string text_of(const ListedSize& listed) {
-  const std::string size = listed.least ? fmt::format("{} to {}", text_of(*listed.least), text_of(listed.size))
-                                        : text_of(listed.size);
+  const std::string size =
+      listed.least ? fmt::format("{} to {}", text_of(*listed.least), text_of(listed.size)) : text_of(listed.size);
   if (listed.fps_hz.empty()) return size;
   std::vector<std::string> rates;
   for (const double rate_hz : listed.fps_hz) rates.push_back(fmt::format("{:.4g}", rate_hz));
@@ -61,8 +61,8 @@ nlohmann::json to_json(const ListedFormat& format) {
 }
 
 nlohmann::json to_json(const ListedControl& control) {
-  return {{"name", control.name},     {"kind", control.kind}, {"value", control.value},
-          {"range", control.range},   {"unit", control.unit}, {"is_writable", control.is_writable},
+  return {{"name", control.name},      {"kind", control.kind}, {"value", control.value},
+          {"range", control.range},    {"unit", control.unit}, {"is_writable", control.is_writable},
           {"choices", control.choices}};
 }
 
@@ -89,8 +89,8 @@ nlohmann::json to_json(const ListedCamera& camera) {
   nlohmann::json formats = nlohmann::json::array(), controls = nlohmann::json::array();
   for (const ListedFormat& format : camera.formats) formats.push_back(to_json(format));
   for (const ListedControl& control : camera.controls) controls.push_back(to_json(control));
-  nlohmann::json json{{"source", camera.source}, {"aliases", camera.aliases}, {"model", camera.model},
-                      {"serial", camera.serial}, {"driver", camera.driver},   {"formats", std::move(formats)},
+  nlohmann::json json{{"source", camera.source},        {"aliases", camera.aliases}, {"model", camera.model},
+                      {"serial", camera.serial},        {"driver", camera.driver},   {"formats", std::move(formats)},
                       {"controls", std::move(controls)}};
   if (!camera.trouble.empty()) json["trouble"] = camera.trouble;
   return json;

@@ -42,8 +42,7 @@ CameraOpener camera_opener(const std::string& source, const CameraRequest& reque
 std::unique_ptr<FrameSource> open_frames(const std::string& source, const CameraOptions& options,
                                          CaptureEventSink events, std::optional<double> fps_hz) {
   if (!is_camera_name(source)) return open_files(source, fps_hz);
-  auto camera =
-      open_live_camera(source, camera_opener(source, request_of(options)), live_options_of(options), events);
+  auto camera = open_live_camera(source, camera_opener(source, request_of(options)), live_options_of(options), events);
   return decoded(queued(std::move(camera), {kLiveFrames, WhenFull::DropOldest, events}));
 }
 

@@ -14,7 +14,8 @@ namespace alidade {
 namespace {
 
 bool is_named(const ListedCamera& camera, const std::string& source) {
-  return camera.source == source || std::find(camera.aliases.begin(), camera.aliases.end(), source) != camera.aliases.end();
+  return camera.source == source ||
+         std::find(camera.aliases.begin(), camera.aliases.end(), source) != camera.aliases.end();
 }
 
 ListedCamera describe_camera(const std::string& source) {

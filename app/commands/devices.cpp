@@ -27,8 +27,9 @@ class DevicesCommand : public Command {
     context.publish(summary);
     if (!context.output.empty()) ResultDirectory(context.output, "devices").commit(summary);
     if (!cameras.empty()) return ExitCode::Success;
-    context.warn("no camera was found: V4L2 cameras are /dev/video*, GigE cameras answer on the networks of this host "
-                 "(name one that does not: alidade devices genicam:ADDRESS)");
+    context.warn(
+        "no camera was found: V4L2 cameras are /dev/video*, GigE cameras answer on the networks of this host "
+        "(name one that does not: alidade devices genicam:ADDRESS)");
     return ExitCode::NoAnswer;
   }
 

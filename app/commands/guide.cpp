@@ -18,7 +18,10 @@ namespace {
 class GuideCommand : public Command {
  public:
   explicit GuideCommand(CLI::App& flags) {
-    flags.add_option("SOURCE", source_, "where somebody shows a board: v4l2:/dev/video0, genicam:ADDRESS, a video, a folder, a glob in quotes")
+    flags
+        .add_option(
+            "SOURCE", source_,
+            "where somebody shows a board: v4l2:/dev/video0, genicam:ADDRESS, a video, a folder, a glob in quotes")
         ->required();
     flags.add_option("--board", board_, "e.g. chessboard:9x6:25mm (inner corners); left out: guessed");
     flags.add_option("--fps", fps_hz_, "frames per second of images that have no times")->check(CLI::PositiveNumber);
@@ -42,7 +45,8 @@ class GuideCommand : public Command {
   ExitCode run(const RunContext& context) override {
     CaptureRecord record;
     const auto frames = open_frames(source_, camera_, warn_of_news(context), fps_hz_);
-    record.board = (is_camera_name(source_) ? choose_board(board_, source_, *frames) : choose_board(board_, source_)).board;
+    record.board =
+        (is_camera_name(source_) ? choose_board(board_, source_, *frames) : choose_board(board_, source_)).board;
     record.enough_px = guide_.enough_px;
     record.source = frames->describe();
     ResultDirectory directory(context.output, "guide");

@@ -16,8 +16,8 @@ TEST(CaptureWarnings, TellOfALossAndOfItsEndButNotOfEachFrame) {
                           Kind::Opened, Kind::Streaming, Kind::Streaming, Kind::Closed}) {
     sink({kind, {}, "cam", 7, kind == Kind::Disconnected ? "unplugged" : ""});
   }
-  EXPECT_EQ(warnings, (std::vector<std::string>{"cam: disconnected before frame 7: unplugged",
-                                                "cam: streaming before frame 7"}));
+  EXPECT_EQ(warnings,
+            (std::vector<std::string>{"cam: disconnected before frame 7: unplugged", "cam: streaming before frame 7"}));
 }
 
 }  // namespace
