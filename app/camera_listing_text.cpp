@@ -17,7 +17,7 @@ std::string text_of(const ListedSize& listed) {
       listed.least ? fmt::format("{} to {}", text_of(*listed.least), text_of(listed.size)) : text_of(listed.size);
   if (listed.fps_hz.empty()) return size;
   std::vector<std::string> rates;
-  for (const double rate_hz : listed.fps_hz) rates.push_back(fmt::format("{:.4g}", rate_hz));
+  for (const double rate_hz : listed.fps_hz) rates.push_back(fmt::format("{:.6g}", rate_hz));
   return fmt::format("{} at {} Hz", size, fmt::join(rates, ", "));
 }
 
