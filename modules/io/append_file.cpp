@@ -97,7 +97,8 @@ void AppendFile::commit() {
 }
 
 void AppendFile::fail(const char* operation, int error) const {
-  const std::string reason = std::generic_category().message(error);
+  std::string reason = std::generic_category().message(error);
+  if (error == ENOSPC) reason = "disk full";
   if (is_full(error)) throw DiskFull(path_, operation, reason, "free some space and run it again");
   throw DeviceError(path_, operation, reason,
                     error == EACCES || error == EROFS ? "choose a folder that you may write to" : "");

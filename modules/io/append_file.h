@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "core/errors.h"
 
@@ -14,7 +15,13 @@ namespace alidade {
 /// The file system takes no more: the disk, a quota or the largest size of a file is reached.
 class DiskFull : public DeviceError {
  public:
-  using DeviceError::DeviceError;
+  DiskFull(const std::string& device, const std::string& operation, std::string reason, const std::string& remedy)
+      : DeviceError(device, operation, reason, remedy), reason_(std::move(reason)) {}
+
+  const std::string& reason() const { return reason_; }  ///< "disk full"
+
+ private:
+  std::string reason_;
 };
 
 /// A file that grows by whole pieces and may be read, and outlive this process, at any moment: NAME.part until commit()

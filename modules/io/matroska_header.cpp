@@ -96,13 +96,15 @@ std::optional<MatroskaHeader> parse_matroska_header(std::string_view bytes) {
   return header;
 }
 
-void close_matroska_header(MatroskaHeader& header, std::chrono::nanoseconds duration, std::int64_t index_position,
-                           std::int64_t file_size) {
+void close_matroska_header(MatroskaHeader& header, std::chrono::nanoseconds duration,
+                           std::optional<std::int64_t> index_position, std::int64_t file_size) {
   constexpr std::size_t kSizeLength = 8;
   const auto segment_size = static_cast<std::uint64_t>(file_size) - header.segment_begin;
   header.bytes.replace(header.segment_begin - kSizeLength, kSizeLength, ebml_long_size(segment_size));
-  const auto position = static_cast<std::uint64_t>(index_position) - header.segment_begin;
-  header.bytes.replace(header.index_note, kSeekHeadSize, seek_head(position));
+  const std::string note = index_position
+                               ? seek_head(static_cast<std::uint64_t>(*index_position) - header.segment_begin)
+                               : ebml_void(kSeekHeadSize);
+  header.bytes.replace(header.index_note, kSeekHeadSize, note);
   header.bytes.replace(header.duration, kDurationSize, ebml_float(kDuration, static_cast<double>(duration.count())));
 }
 

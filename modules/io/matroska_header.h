@@ -35,8 +35,9 @@ MatroskaHeader make_matroska_header(const MatroskaTrack& track);
 /// The header that a file begins with, which make_matroska_header made; empty where it is none.
 std::optional<MatroskaHeader> parse_matroska_header(std::string_view bytes);
 
-/// Writes into the header how long the video is, where in the file its index stands, and how long the file is.
-void close_matroska_header(MatroskaHeader& header, std::chrono::nanoseconds duration, std::int64_t index_position,
-                           std::int64_t file_size);
+/// Writes into the header how long the video is, where in the file its index stands, if it has one, and how long the
+/// file is.
+void close_matroska_header(MatroskaHeader& header, std::chrono::nanoseconds duration,
+                           std::optional<std::int64_t> index_position, std::int64_t file_size);
 
 }  // namespace alidade

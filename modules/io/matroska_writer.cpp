@@ -69,6 +69,7 @@ MatroskaPacket MatroskaWriter::write(std::chrono::nanoseconds time, std::string_
   const std::string head = cluster_head(std::max(time, std::chrono::nanoseconds(0)), packet.size());
   const std::int64_t begin = file_.size();
   file_.append({head, packet});
+  rest_before_ = rest_;
   rest_.add(head);
   rest_.add(packet);
   const MatroskaPacket written{begin + kMatroskaClusterHead, static_cast<std::int64_t>(packet.size()), time};
@@ -76,11 +77,22 @@ MatroskaPacket MatroskaWriter::write(std::chrono::nanoseconds time, std::string_
   return written;
 }
 
+void MatroskaWriter::take_back() {
+  const std::int64_t end = static_cast<std::int64_t>(header_.bytes.size()) + rest_before_.length();
+  file_.cut(end);
+  rest_ = rest_before_;
+  if (!index_.empty() && index_.back().position > end) index_.pop_back();
+}
+
 void MatroskaWriter::close() {
-  const std::int64_t index_position = file_.size();
+  std::optional<std::int64_t> index_position = file_.size();
   const std::string index = index_of(index_, header_.segment_begin);
-  file_.append({index});
-  rest_.add(index);
+  try {
+    file_.append({index});
+    rest_.add(index);
+  } catch (const DiskFull&) {
+    index_position.reset();
+  }
   close_matroska_header(header_, last_time_.value_or(std::chrono::nanoseconds(0)) + period_, index_position,
                         file_.size());
   file_.overwrite(0, header_.bytes);

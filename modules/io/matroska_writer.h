@@ -36,10 +36,13 @@ class MatroskaWriter {
   /// Appends a frame; times must increase, and one that does not is moved on as little as can be.
   MatroskaPacket write(std::chrono::nanoseconds time, std::string_view packet);
 
+  /// Gives up the last frame written; once.
+  void take_back();
+
   std::int64_t size() const { return file_.size(); }  ///< bytes
   void start_writeback() { file_.start_writeback(); }
 
-  /// Writes what is left and gives the file its name. At most once, and last.
+  /// Writes what is left and gives the file its name; without an index where the disk is full. At most once, and last.
   void close();
 
   /// Of the whole file, once closed. Not after going on with a file.
@@ -54,6 +57,7 @@ class MatroskaWriter {
   std::optional<std::chrono::nanoseconds> last_time_;
   std::vector<MatroskaPacket> index_;  // one in a while
   Crc32 rest_;                         // of what comes after the header
+  Crc32 rest_before_;                  // the same, without the last frame
 };
 
 /// The clusters that MatroskaWriter writes have a head of this many bytes before the packet.
