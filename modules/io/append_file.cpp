@@ -18,8 +18,11 @@ namespace {
 
 constexpr std::size_t kMostParts = 8;
 
-bool is_full(int error) {
-  return error == ENOSPC || error == EDQUOT || error == EFBIG;
+// Empty for an errno that means something else.
+std::string limit_of(int error) {
+  if (error == ENOSPC) return "disk full";
+  if (error == EDQUOT) return "quota reached";
+  return error == EFBIG ? "largest size of a file reached" : "";
 }
 
 // Writes all of the parts. Zero, or the errno of what went wrong.
@@ -62,7 +65,8 @@ void AppendFile::append(std::initializer_list<std::string_view> parts) {
     if (!part.empty()) pieces[count++] = {const_cast<char*>(part.data()), part.size()};
   }
   if (const int error = write_all(descriptor_, pieces, count)) {
-    cut(size_);  // what did fit of it
+    // What did fit of it goes. Where it cannot be cut off, the first fault is the one to tell.
+    if (::ftruncate(descriptor_, size_) == 0) ::lseek(descriptor_, size_, SEEK_SET);
     fail("cannot be written", error);
   }
   size_ += length;
@@ -97,11 +101,14 @@ void AppendFile::commit() {
 }
 
 void AppendFile::fail(const char* operation, int error) const {
-  std::string reason = std::generic_category().message(error);
-  if (error == ENOSPC) reason = "disk full";
-  if (is_full(error)) throw DiskFull(path_, operation, reason, "free some space and run it again");
-  throw DeviceError(path_, operation, reason,
-                    error == EACCES || error == EROFS ? "choose a folder that you may write to" : "");
+  const std::string reason = std::generic_category().message(error);
+  const std::string limit = limit_of(error);
+  const std::string remedy = error == ENOSPC || error == EDQUOT  ? "free some space and run it again"
+                             : error == EACCES || error == EROFS ? "choose a folder that you may write to"
+                             : error == ENOENT                   ? "create the folder first"
+                                                                 : "";
+  if (!limit.empty()) throw DiskFull(path_, operation, reason, remedy, limit);
+  throw DeviceError(path_, operation, reason, remedy);
 }
 
 }  // namespace alidade

