@@ -51,11 +51,10 @@ MatroskaWriter::MatroskaWriter(const std::filesystem::path& path, const Matroska
 }
 
 MatroskaWriter::MatroskaWriter(const std::filesystem::path& path, MatroskaHeader header,
-                               const std::vector<MatroskaPacket>& packets)
+                               const std::vector<MatroskaPacket>& packets, std::int64_t end)
     : file_(path, AppendFile::Start::AtEnd), header_(std::move(header)), period_(0) {
   for (const MatroskaPacket& packet : packets) note(packet);
-  file_.cut(packets.empty() ? static_cast<std::int64_t>(header_.bytes.size())
-                            : packets.back().position + packets.back().size);
+  file_.cut(end);
 }
 
 void MatroskaWriter::note(const MatroskaPacket& packet) {

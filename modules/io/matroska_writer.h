@@ -30,8 +30,9 @@ class MatroskaWriter {
   /// Throws DeviceError, as all below do; DiskFull where the disk is.
   MatroskaWriter(const std::filesystem::path& path, const MatroskaTrack& track);
 
-  /// Goes on with NAME.part, which this class began and which holds `packets`; what comes after them is given up.
-  MatroskaWriter(const std::filesystem::path& path, MatroskaHeader header, const std::vector<MatroskaPacket>& packets);
+  /// Goes on with NAME.part, which this class began and which holds `packets`; what comes after `end` is given up.
+  MatroskaWriter(const std::filesystem::path& path, MatroskaHeader header, const std::vector<MatroskaPacket>& packets,
+                 std::int64_t end);
 
   /// Appends a frame; times must increase, and one that does not is moved on as little as can be.
   MatroskaPacket write(std::chrono::nanoseconds time, std::string_view packet);

@@ -115,7 +115,7 @@ TEST_F(MatroskaFile, ThatIsGoneOnWithIsTheSameAsOneInOnePiece) {
   const auto header = parse_matroska_header(whole);
   ASSERT_TRUE(header);
   EXPECT_EQ(header->codec_private, encoder_.track({}).codec_private);
-  MatroskaWriter again(path_, *header, packets_);
+  MatroskaWriter again(path_, *header, packets_, packets_.back().position + packets_.back().size);
   again.close();
   EXPECT_TRUE(read_bytes(path_) == whole);
 }

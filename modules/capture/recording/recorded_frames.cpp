@@ -5,7 +5,6 @@
 
 #include "capture/recording/recording_names.h"
 #include "core/errors.h"
-#include "io/atomic_file.h"
 
 namespace alidade {
 namespace {
@@ -13,11 +12,6 @@ namespace {
 constexpr std::int64_t kLongestHeader = 1 << 16;  // bytes
 
 }  // namespace
-
-std::filesystem::path find_recorded(const std::filesystem::path& folder, const char* name) {
-  const std::filesystem::path part = part_name(folder / name);
-  return std::filesystem::exists(part) ? part : folder / name;
-}
 
 FrameRows::FrameRows(const std::filesystem::path& folder)
     : path_(find_recorded(folder, kFramesName)), file_(path_, std::ios::binary) {

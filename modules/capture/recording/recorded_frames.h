@@ -15,9 +15,6 @@
 
 namespace alidade {
 
-/// Where a file of a recording is: NAME, or NAME.part while it is not closed; NAME where there is neither.
-std::filesystem::path find_recorded(const std::filesystem::path& folder, const char* name);
-
 /// The rows of frames.csv, one by one. Not a last line that was not written to its end.
 class FrameRows {
  public:

@@ -223,8 +223,8 @@ RecordingWriter::RecordingWriter(fs::path folder, RecordingSubject subject, cons
   session.request = std::move(subject.request);
   session.options = options;
   session.start = read_clocks();
-  write_session(folder, session);
   state_ = std::make_unique<State>(std::move(folder), std::move(session));
+  write_session(state_->folder, state_->session);  // last: where it is, the others are
 }
 RecordingWriter::~RecordingWriter() = default;
 RecordingWriter::RecordingWriter(RecordingWriter&&) noexcept = default;

@@ -159,7 +159,7 @@ TEST_F(RecordingFolder, SaysWhatItHoldsAndItsChecksums) {
     EXPECT_EQ(file.crc32, crc.value()) << file.name;
     EXPECT_EQ(file.bytes, crc.length()) << file.name;
   }
-  EXPECT_EQ(text("events.csv"), "host_time_ns,kind,source,frame,detail\n5,stalled,\"a, \"\"b\"\"\",2,\"no frame\"\n");
+  EXPECT_EQ(text("events.csv"), "host_time_ns,kind,frame,source,detail\n5,stalled,2,\"a, \"\"b\"\"\",\"no frame\"\n");
 }
 
 TEST_F(RecordingFolder, WithoutAFrameIsARecordingAllTheSame) {
