@@ -5,6 +5,7 @@ namespace alidade {
 
 std::vector<Verb> all_verbs() {
   return {devices_verb(),
+          record_verb(),
           track_camera_verb(),
           track_body_verb(),
           calibrate_board_verb(),

@@ -12,6 +12,7 @@ namespace alidade {
 std::vector<Verb> all_verbs();
 
 Verb devices_verb();
+Verb record_verb();
 Verb track_camera_verb();
 Verb track_body_verb();
 Verb calibrate_board_verb();
