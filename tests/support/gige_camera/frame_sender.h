@@ -33,9 +33,9 @@ struct SenderCounts {
 };
 
 struct SenderOptions {
-  double loss = 0;           ///< share of packets that are lost, first and resent ones alike
-  std::uint32_t seed = 1;    ///< of the loss
-  double link_mb_per_s = 0;  ///< 10⁶ bytes per second that the link carries; 0: as many as it can
+  double loss = 0;              ///< share of packets that are lost, first and resent ones alike
+  std::uint32_t seed = 1;       ///< of the loss
+  double link_mb_per_s = 1000;  ///< 10⁶ bytes per second that the link carries; 0: as many as it can
   std::size_t kept_frames = 8;
 };
 

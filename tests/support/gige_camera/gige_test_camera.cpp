@@ -77,7 +77,8 @@ void add_flags(CLI::App& app, Flags& flags) {
   app.add_option("--drop", flags.camera.drop_share, "share of frames that are never sent")->check(CLI::Range(0.0, 1.0));
   app.add_option("--seed", sender.seed, "of what is lost and dropped")->capture_default_str();
   app.add_option("--resend-delay", flags.resend_delay_ms, "ms from a request to the resent packet");
-  app.add_option("--link", sender.link_mb_per_s, "MB/s that the network carries (GigE: 118); 0: as many as it can");
+  app.add_option("--link", sender.link_mb_per_s, "MB/s that the network carries (GigE: 118); 0: as many as it can")
+      ->capture_default_str();
   app.add_option("--kept-frames", sender.kept_frames, "frames that can be sent again")->capture_default_str();
   app.add_option("--pulse", flags.pulse_hz, "Hz, of a signal at line 0");
   app.add_option("--log", flags.log, "CSV of what was exposed: frame id, both clocks' times in ns, picture");
