@@ -190,10 +190,7 @@ class LiveCamera : public FrameSource {
       }
       time = Timestamp(clock_.to_host(*stamp.device_time)->time_since_epoch());
     }
-    if (!facts.exposure || !stamp.device_time) return time;
-    if (facts.stamped == StampedMoment::ExposureStart) return time + *facts.exposure / 2;
-    if (facts.stamped == StampedMoment::ReadoutEnd) return time - *facts.exposure / 2;
-    return time;
+    return stamp.device_time ? time + stamp_to_middle(facts) : time;
   }
 
   const std::string name_;

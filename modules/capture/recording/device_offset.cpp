@@ -10,9 +10,9 @@ constexpr int kFrames = 64;
 
 }  // namespace
 
-void DeviceOffset::observe(const CaptureStamp& stamp) {
-  if (!stamp.device_time || !stamp.host_time) return;
-  const std::chrono::nanoseconds offset = stamp.host_time->time_since_epoch() - stamp.device_time->time_since_epoch();
+void DeviceOffset::observe(const Frame& frame, const CameraFacts& camera) {
+  if (!frame.stamp.device_time) return;
+  const std::chrono::nanoseconds offset = frame.time - stamp_to_middle(camera) - *frame.stamp.device_time;
   if (seen_++ < kFrames) at_start_ = at_start_ ? std::min(*at_start_, offset) : offset;
   last_.push_back(offset);
   if (last_.size() > kFrames) last_.pop_front();

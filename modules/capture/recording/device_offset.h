@@ -5,14 +5,15 @@
 #include <deque>
 #include <optional>
 
-#include "capture/frame_source.h"
+#include "capture/camera_device.h"
 
 namespace alidade {
 
-/// Host time minus device time over the first and over the last frames of a recording, for its record.
+/// Host time minus device time over the first and over the last frames of a recording, for its record: by Frame::time,
+/// which LiveCamera's ClockOffset put on the host's clock.
 class DeviceOffset {
  public:
-  void observe(const CaptureStamp& stamp);
+  void observe(const Frame& frame, const CameraFacts& camera);
 
   std::optional<std::chrono::nanoseconds> at_start() const { return at_start_; }
   std::optional<std::chrono::nanoseconds> at_end() const;

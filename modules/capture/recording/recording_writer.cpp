@@ -174,7 +174,7 @@ void RecordingWriter::State::write(const Frame& frame) {
     throw;
   }
   session.totals.add(row);
-  offset.observe(frame.stamp);
+  offset.observe(frame, session.camera);
   write_back();
 }
 
