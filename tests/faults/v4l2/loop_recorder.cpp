@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <chrono>
 #include <fstream>
+#include <string_view>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -15,9 +16,9 @@ namespace alidade::test {
 namespace {
 
 constexpr const char* kUsage =
-    "usage: v4l2_loop FRAMES WIDTH HEIGHT FORMAT DIR\n"
+    "usage: v4l2_loop FRAMES WIDTH HEIGHT FORMAT DIR [slow]\n"
     "FRAMES: a file of raw frames in the V4L2 format FORMAT (GREY, YUYV). DIR: becomes a recording, and in shown.csv\n"
-    "which of the frames each recorded one is. Prints figures as JSON.\n";
+    "which of the frames each recorded one is. 30 Hz, or 14.4 Hz where slow. Prints figures as JSON.\n";
 
 /// A file in memory, as it is needed.
 class MappedFile {
@@ -72,14 +73,15 @@ void record(const RawFrames& frames, const std::filesystem::path& folder) {
 }  // namespace alidade::test
 
 int main(int count, char** words) {
-  if (count != 6) {
+  const bool is_slow = count == 7 && std::string_view(words[6]) == "slow";
+  if (count != 6 && !is_slow) {
     fmt::print(stderr, "{}", alidade::test::kUsage);
     return 2;
   }
   try {
     const alidade::test::MappedFile file(words[1]);
     const cv::Size size(std::stoi(words[2]), std::stoi(words[3]));
-    alidade::test::record({file.bytes(), size, words[4]}, words[5]);
+    alidade::test::record({file.bytes(), size, words[4], is_slow}, words[5]);
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 1;

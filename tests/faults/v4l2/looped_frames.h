@@ -14,7 +14,8 @@
 namespace alidade::test {
 
 /// Frames that went through the machine's video output and came back from its camera, from the first to the last one
-/// shown. Both run at 30 Hz, each by its own clock: a frame may come twice or be missed, and shown() says which came.
+/// shown. Both run at the same rate, each by its own clock: a frame may come twice or be missed, and shown() says which
+/// came.
 class LoopedFrames : public FrameSource {
  public:
   /// `frames` must outlive it. Throws CameraError.
