@@ -4,7 +4,8 @@
 import json
 
 # What GoogleTest says of each test itself; the rest are figures that the test reported.
-OF_THE_TEST = {"name", "file", "line", "status", "result", "timestamp", "time", "classname", "failures"}
+OF_THE_TEST = {"name", "file", "line", "status", "result", "timestamp", "time", "classname", "failures",
+               "value_param", "type_param"}  # fmt: skip
 
 
 def number(text):

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <future>
+#include <set>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -35,15 +36,15 @@ TEST_F(V4l2FaultsInTheMachine, CountTheFramesThatTheDriverDrops) {
   const int frames = parameter("ALIDADE_DROP_FRAMES", 300);
   LiveWebcam camera(60);
   set_control(kWebcam, "percentage_of_dropped_buffers", "10");
-  std::uint64_t dropped = 0, first = 0, last = 0;
+  std::uint64_t dropped = 0;
+  std::set<std::uint64_t> came;  // vivid counts a frame twice at times, when the machine holds it up
   for (int i = 0; i < frames; ++i) {
     const auto frame = camera.next();
     ASSERT_TRUE(frame);
-    last = frame->stamp.sequence.value();
-    if (i == 0) first = last;
     if (i > 0) dropped += frame->stamp.dropped_before;
+    came.insert(frame->stamp.sequence.value());
   }
-  const std::uint64_t missing = last - first + 1 - static_cast<std::uint64_t>(frames);
+  const std::uint64_t missing = *came.rbegin() - *came.begin() + 1 - came.size();
   EXPECT_EQ(dropped, missing);
   EXPECT_GT(dropped, static_cast<std::uint64_t>(frames) / 20);
   EXPECT_GT(camera.count(CaptureEventKind::FramesDropped), 0);
@@ -91,10 +92,11 @@ TEST_F(V4l2FaultsInTheMachine, MakeOneClearErrorOfARefusedStart) {
 TEST_F(V4l2FaultsInTheMachine, LoseNothingWhenABufferIsNotTakenBack) {
   LiveWebcam camera;
   ASSERT_TRUE(camera.read(3));
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; i < 12; ++i) {  // more often than there are buffers
     set_control(kWebcam, "inject_vidioc_qbuf_error", "1");
-    ASSERT_TRUE(camera.read(8));
+    ASSERT_TRUE(camera.read(3));
   }
+  EXPECT_EQ(camera.count(CaptureEventKind::Stalled), 0);
   EXPECT_EQ(camera.count(CaptureEventKind::Disconnected), 0);
 }
 
@@ -102,19 +104,19 @@ TEST_F(V4l2FaultsInTheMachine, CarryTheCountOverItsWrap) {
   const WebcamReset reset;
   set_control(kWebcam, "wrap_sequence_number", "on");
   LiveWebcam camera(60);
-  std::uint64_t dropped = 0, lowest = UINT64_MAX, highest = 0;
+  std::uint64_t dropped = 0;
+  int counted_twice = 0;  // by vivid, when the machine holds it up
+  std::set<std::uint64_t> came;
   for (int i = 0; i < 200; ++i) {
     const auto frame = camera.next();
     ASSERT_TRUE(frame);
     dropped += frame->stamp.dropped_before;
-    lowest = std::min(lowest, *frame->stamp.sequence);
-    highest = std::max(highest, *frame->stamp.sequence);
+    counted_twice += !came.insert(frame->stamp.sequence.value()).second;
   }
-  EXPECT_GT(highest, 0xffff'0000U);
-  EXPECT_LT(lowest, 0x1'0000U);
+  EXPECT_GT(*came.rbegin(), 0xffff'0000U);
+  EXPECT_LT(*came.begin(), 0x1'0000U);
   EXPECT_LT(dropped, 100U);  // not four milliards
-  const auto restarted = camera.find(CaptureEventKind::Restarted, {});
-  EXPECT_FALSE(restarted) << restarted->detail;
+  EXPECT_EQ(camera.count(CaptureEventKind::Restarted), counted_twice);
 }
 
 TEST_F(V4l2FaultsInTheMachine, AreOverSoonAfterAFatalError) {

@@ -24,10 +24,31 @@ const V4l2Format& format_of(const RawFrames& frames) {
   return *format;
 }
 
+/// 1280x720 at 30 Hz, or with as few pixels around the picture and as slow as the driver takes it.
+v4l2_dv_timings signal_of(const RawFrames& frames) {
+  v4l2_dv_timings timings = V4L2_DV_BT_CEA_1280X720P30;
+  if (!frames.is_slow) return timings;
+  v4l2_bt_timings slow{};
+  slow.width = 1280;
+  slow.height = 720;
+  slow.polarities = V4L2_DV_HSYNC_POS_POL;
+  slow.pixelclock = 15'500'000;  // of 1440 x 735 in all: 14.4 Hz
+  slow.hfrontporch = 48;
+  slow.hsync = 32;
+  slow.hbackporch = 80;
+  slow.vfrontporch = 3;
+  slow.vsync = 5;
+  slow.vbackporch = 7;
+  slow.standards = V4L2_DV_BT_STD_CVT;
+  slow.flags = V4L2_DV_FL_REDUCED_BLANKING;
+  timings.bt = slow;
+  return timings;
+}
+
 // Both ends must agree on the signal. It is larger than most frames: vivid scales them up on one side and down by as
 // much on the other, which it does by copying them.
-void connect() {
-  v4l2_dv_timings timings = V4L2_DV_BT_CEA_1280X720P30;
+void connect(const RawFrames& frames) {
+  v4l2_dv_timings timings = signal_of(frames);
   for (const char* path : {kLoopInput, kLoopOutput})
     V4l2Device(path).require(VIDIOC_S_DV_TIMINGS, &timings, "set the video signal");
   set_control(kLoopInput, "loop_video", "on");
@@ -65,7 +86,7 @@ std::span<const std::uint8_t> RawFrames::frame(int index) const {
   return bytes.subspan(static_cast<std::size_t>(index) * frame_bytes(), frame_bytes());
 }
 
-LoopOutput::LoopOutput(const RawFrames& frames) : frames_(frames), device_((connect(), kLoopOutput)) {
+LoopOutput::LoopOutput(const RawFrames& frames) : frames_(frames), device_((connect(frames), kLoopOutput)) {
   if (frames.count() < 1) throw std::invalid_argument("LoopOutput: needs a frame");
   set_format(device_, frames);
   v4l2_requestbuffers request{};

@@ -20,13 +20,14 @@ struct RawFrames {
   std::span<const std::uint8_t> bytes;
   cv::Size size;
   std::string format;
+  bool is_slow = false;  ///< shown at 14.4 Hz instead of 30, for a machine that has much to do
 
   std::size_t frame_bytes() const;
   int count() const { return static_cast<int>(bytes.size() / frame_bytes()); }
   std::span<const std::uint8_t> frame(int index) const;
 };
 
-/// The machine's video output, looped back into its HDMI camera byte by byte, at 30 Hz. Shows the first frame until
+/// The machine's video output, looped back into its HDMI camera byte by byte. Shows the first frame until
 /// show_all(), then each for one period, and the last from then on.
 class LoopOutput {
  public:

@@ -28,8 +28,8 @@ class V4l2LoopInTheMachine : public testing::TestWithParam<const char*> {
 };
 
 TEST_P(V4l2LoopInTheMachine, GivesBackTheFramesThatWereShown) {
-  constexpr int kFrames = 45;
-  RawFrames frames{{}, {320, 240}, GetParam()};
+  constexpr int kFrames = 30;
+  RawFrames frames{{}, {320, 240}, GetParam(), true};
   const std::vector<std::uint8_t> bytes = noise(frames.frame_bytes() * kFrames);
   frames.bytes = bytes;
   LoopedFrames looped(frames, {});

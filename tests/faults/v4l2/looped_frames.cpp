@@ -12,19 +12,21 @@
 namespace alidade::test {
 namespace {
 
-std::unique_ptr<FrameSource> camera_of(const RawFrames& frames, CaptureEventSink events) {
+std::unique_ptr<FrameSource> camera_of(const RawFrames& frames, CaptureEventSink events, CameraFacts& facts) {
   LiveCameraOptions options;
   options.give_up_s = 10;
-  const CameraRequest request = loop_request(frames);
-  return open_live_camera(
-      std::string("v4l2:") + kLoopInput, [request] { return open_v4l2(kLoopInput, request); }, options,
-      std::move(events));
+  const auto open = [&facts, request = loop_request(frames)] {
+    auto camera = open_v4l2(kLoopInput, request);
+    facts = camera->facts();
+    return camera;
+  };
+  return open_live_camera(std::string("v4l2:") + kLoopInput, open, options, std::move(events));
 }
 
 }  // namespace
 
 LoopedFrames::LoopedFrames(const RawFrames& frames, CaptureEventSink events)
-    : frames_(frames), output_(frames), camera_(camera_of(frames, std::move(events))) {}
+    : frames_(frames), output_(frames), camera_(camera_of(frames, std::move(events), facts_)) {}
 
 // Frames are looked for from the last one on, as far ahead as the machine may ever be held up.
 int LoopedFrames::identify(const Frame& frame) const {

@@ -14,7 +14,8 @@
 namespace alidade::test {
 
 /// Frames that went through the machine's video output and came back from its camera, from the first to the last one
-/// shown. Both run at 30 Hz, each by its own clock: a frame may come twice or be missed, and shown() says which came.
+/// shown. Both run at the same rate, each by its own clock: a frame may come twice or be missed, and shown() says which
+/// came.
 class LoopedFrames : public FrameSource {
  public:
   /// `frames` must outlive it. Throws CameraError.
@@ -26,6 +27,9 @@ class LoopedFrames : public FrameSource {
   bool has_times() const override { return true; }
   std::string describe() const override { return camera_->describe(); }
 
+  /// What the camera granted.
+  const CameraFacts& camera() const { return facts_; }
+
   /// For each frame given, which one of `frames` it is; -1 for one that is none of them.
   const std::vector<int>& shown() const { return shown_; }
 
@@ -34,6 +38,7 @@ class LoopedFrames : public FrameSource {
 
   RawFrames frames_;
   LoopOutput output_;
+  CameraFacts facts_;  ///< of the opening of camera_, which is made after it
   std::unique_ptr<FrameSource> camera_;
   std::vector<int> shown_;
   int last_ = 0;          ///< frame seen last
