@@ -165,6 +165,8 @@ class Repair {
       session_.files.push_back({name, crc.length(), crc.value()});
     }
     session_.is_closed = session_.is_repaired = true;
+    std::error_code ignored;
+    fs::remove(part_name(folder_ / kReserveName), ignored);
     write_session(folder_, session_);
     result_.totals = session_.totals;
   }
