@@ -151,6 +151,17 @@ TEST_F(InterruptedRecording, WithoutAFrameIsClosedToo) {
   EXPECT_EQ(frames_after_repair(), 0);
 }
 
+TEST_F(InterruptedRecording, IsLeftAloneWhileItIsRecorded) {
+  path_ = folder_ / "live";
+  RecordingWriter writer(path_, camera_);
+  writer.write(test::synthetic_frame(camera_, 0));
+  EXPECT_EQ(test::message_of(folder_.path(), [&] { repair_recording(path_); }),
+            "live/frames.csv: cannot be written: another program is writing it; wait until that has ended");
+  writer.write(test::synthetic_frame(camera_, 1));
+  writer.close();
+  EXPECT_TRUE(verify_recording(path_).faults.empty());
+}
+
 TEST_F(InterruptedRecording, ThatIsNoneIsNamed) {
   fs::create_directory(folder_ / "foreign");
   EXPECT_NE(test::message_of(folder_.path(), [&] { repair_recording(folder_ / "foreign"); }).find("session.json"),
