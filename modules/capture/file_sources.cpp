@@ -8,8 +8,11 @@
 #include <fmt/format.h>
 #include <glob.h>
 
+#include "capture/decoding.h"
 #include "capture/frame_queue.h"
 #include "capture/image_names.h"
+#include "capture/recording/recording.h"
+#include "capture/recording/recording_group.h"
 #include "core/errors.h"
 #include "io/image_files.h"
 #include "io/natural_order.h"
@@ -85,7 +88,17 @@ std::vector<TimedImage> read_times(const fs::path& path) {
   return images;
 }
 
+// One camera's recording; empty where the folder is none.
+std::unique_ptr<FrameSource> open_recorded(const fs::path& folder) {
+  const std::vector<fs::path> recordings = recordings_of(folder);
+  if (recordings.empty()) return nullptr;
+  if (recordings.size() == 1) return queued(decoded(open_recording(recordings.front())));
+  throw InputError(folder, 0, fmt::format("holds the recordings of {} cameras", recordings.size()),
+                   "name one of them: " + recordings.front().string());
+}
+
 std::unique_ptr<FrameSource> open_folder(const fs::path& folder, std::optional<double> fps_hz) {
+  if (auto recording = open_recorded(folder)) return recording;
   const auto description = [&](std::size_t count) { return fmt::format("{} images in {}", count, folder.string()); };
   if (const auto times = find_times(folder)) {
     std::vector<TimedImage> images = read_times(*times);

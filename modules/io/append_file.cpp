@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/uio.h>
 #include <unistd.h>
 
@@ -45,9 +46,17 @@ int write_all(int descriptor, std::array<iovec, kMostParts>& parts, std::size_t 
 }  // namespace
 
 AppendFile::AppendFile(std::filesystem::path path, Start start) : path_(std::move(path)) {
-  const int how = start == Start::Anew ? O_CREAT | O_TRUNC : 0;
-  descriptor_ = ::open(part_name(path_).c_str(), O_WRONLY | O_CLOEXEC | how, 0666);
-  if (descriptor_ < 0) fail(start == Start::Anew ? "cannot be created" : "cannot be written", errno);
+  const char* const operation = start == Start::Anew ? "cannot be created" : "cannot be written";
+  descriptor_ = ::open(part_name(path_).c_str(), O_WRONLY | O_CLOEXEC | (start == Start::Anew ? O_CREAT : 0), 0666);
+  if (descriptor_ < 0) fail(operation, errno);
+  if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    ::close(descriptor_);
+    throw DeviceError(path_, operation, "another program is writing it", "wait until that has ended");
+  }
+  if (start == Start::Anew && ::ftruncate(descriptor_, 0) != 0 && errno != EINVAL) {  // EINVAL: a device
+    ::close(descriptor_);
+    fail(operation, errno);
+  }
   size_ = ::lseek(descriptor_, 0, SEEK_END);
 }
 

@@ -27,11 +27,13 @@ class DiskFull : public DeviceError {
 
 /// A file that grows by whole pieces and may be read, and outlive this process, at any moment: NAME.part until commit()
 /// names it. Where a piece does not fit the file stays as it was. Never removed; without commit() NAME.part stays.
+/// No two of them write to one file at the same time, in whatever process.
 class AppendFile {
  public:
   enum class Start { Anew, AtEnd };
 
-  /// Opens NAME.part: empty, or at the end of what it holds. Throws DeviceError, as all below do.
+  /// Opens NAME.part: empty, or at the end of what it holds. Throws DeviceError, as all below do; where another program
+  /// writes to it too.
   explicit AppendFile(std::filesystem::path path, Start start = Start::Anew);
   ~AppendFile();
   AppendFile(const AppendFile&) = delete;

@@ -60,6 +60,17 @@ TEST_F(AppendedFile, IsAsBeforeWhereAPieceDoesNotFit) {
   EXPECT_EQ(part(), std::string(90, 'x') + "0123456789");
 }
 
+TEST_F(AppendedFile, HasOneWriter) {
+  AppendFile file(folder_ / "a");
+  file.append({"kept"});
+  for (const auto start : {AppendFile::Start::Anew, AppendFile::Start::AtEnd}) {
+    EXPECT_NE(test::message_of(folder_.path(), [&] { AppendFile(folder_ / "a", start); })
+                  .find("another program is writing it; wait until that has ended"),
+              std::string::npos);
+  }
+  EXPECT_EQ(part(), "kept");
+}
+
 TEST_F(AppendedFile, IsRefusedInOneLine) {
   EXPECT_EQ(test::message_of(folder_.path(), [&] { AppendFile(folder_ / "none/a"); }),
             "none/a: cannot be created: No such file or directory; create the folder first");

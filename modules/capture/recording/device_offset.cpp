@@ -1,26 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "capture/recording/device_offset.h"
 
-#include <algorithm>
-
 namespace alidade {
-namespace {
-
-constexpr int kFrames = 64;
-
-}  // namespace
 
 void DeviceOffset::observe(const Frame& frame, const CameraFacts& camera) {
+  constexpr int kStart = 64;  // frames
   if (!frame.stamp.device_time) return;
-  const std::chrono::nanoseconds offset = frame.time - stamp_to_middle(camera) - *frame.stamp.device_time;
-  if (seen_++ < kFrames) at_start_ = at_start_ ? std::min(*at_start_, offset) : offset;
-  last_.push_back(offset);
-  if (last_.size() > kFrames) last_.pop_front();
-}
-
-std::optional<std::chrono::nanoseconds> DeviceOffset::at_end() const {
-  if (last_.empty()) return std::nullopt;
-  return *std::min_element(last_.begin(), last_.end());
+  at_end_ = frame.time - stamp_to_middle(camera) - *frame.stamp.device_time;
+  if (seen_++ < kStart) at_start_ = at_end_;
 }
 
 }  // namespace alidade

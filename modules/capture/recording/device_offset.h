@@ -2,26 +2,26 @@
 #pragma once
 
 #include <chrono>
-#include <deque>
 #include <optional>
 
 #include "capture/camera_device.h"
+#include "capture/frame_source.h"
 
 namespace alidade {
 
-/// Host time minus device time over the first and over the last frames of a recording, for its record: by Frame::time,
-/// which LiveCamera's ClockOffset put on the host's clock.
+/// Host time minus device time at the start and at the end of a recording, for its record: as Frame::time, which
+/// LiveCamera put on the host's clock, has it.
 class DeviceOffset {
  public:
   void observe(const Frame& frame, const CameraFacts& camera);
 
+  /// After the first 64 frames that tell both times, or as many as came; empty before the first.
   std::optional<std::chrono::nanoseconds> at_start() const { return at_start_; }
-  std::optional<std::chrono::nanoseconds> at_end() const;
+  std::optional<std::chrono::nanoseconds> at_end() const { return at_end_; }
 
  private:
-  std::optional<std::chrono::nanoseconds> at_start_;
+  std::optional<std::chrono::nanoseconds> at_start_, at_end_;
   int seen_ = 0;
-  std::deque<std::chrono::nanoseconds> last_;
 };
 
 }  // namespace alidade

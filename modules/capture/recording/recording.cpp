@@ -57,12 +57,11 @@ class Recording : public FrameSource {
     std::vector<std::string> faults;
     if (!session_.is_closed) faults.push_back("was not closed (see 'alidade repair')");
     const auto add = [&faults](auto count, const char* what) {
-      if (count > 0) faults.push_back(fmt::format("{} {}", count, what));
+      if (count > 0) faults.push_back(fmt::format("{} frame{} {}", count, count == 1 ? "" : "s", what));
     };
-    add(totals_.dropped, "frames were dropped by the camera");
-    add(totals_.discarded, "frames were discarded since recording was too slow");
-    add(totals_.damaged, "frames came damaged");
-    add(unreadable_, "frames are no longer what was recorded");
+    add(totals_.dropped, "dropped by the camera");
+    add(totals_.discarded, "discarded since recording was too slow");
+    add(unreadable_, "no longer as recorded");
     if (faults.empty() || totals_.frames < count_) return std::nullopt;
     return fmt::format("{}: {}", folder_.string(), fmt::join(faults, ", "));
   }

@@ -15,7 +15,8 @@ bool is_recording(const std::filesystem::path& folder);
 /// their times and stamps, exactly as they were recorded, damaged frames too. Of one that is not closed (interrupted,
 /// or still going on): all that were confirmed when it was opened; nothing is changed. Frame::name is "FOLDER#index".
 /// A frame whose pixels are not those recorded (the disk has damaged them) is flagged as damaged, its image empty where
-/// nothing could be read. fault() tells of these, of lost frames, and of a recording that was not closed.
+/// nothing could be read. fault() tells of these, of lost frames, and of a recording that was not closed;
+/// frames that the camera damaged say so themselves.
 /// Throws InputError where it is no recording, or its video is missing.
 std::unique_ptr<FrameSource> open_recording(const std::filesystem::path& folder);
 

@@ -29,6 +29,26 @@ json describe(const std::string& name, const RecordingSession& session) {
   return member;
 }
 
+struct Group {
+  std::string program;
+  std::vector<std::string> members;
+};
+
+// Empty where the folder is no group.
+std::optional<Group> read_group(const fs::path& folder) {
+  const fs::path path = folder / kSessionName;
+  if (!fs::exists(path)) return std::nullopt;
+  try {
+    const json j = json::parse(read_bytes(path));
+    if (j.value("format", "") != kGroupFormat) return std::nullopt;
+    Group group{j.at("program"), {}};
+    for (const json& member : j.at("members")) group.members.push_back(member.at("folder"));
+    return group;
+  } catch (const json::exception& error) {
+    throw InputError(path, 0, fmt::format("is damaged: {}", error.what()), "name one of the recordings in the folder");
+  }
+}
+
 }  // namespace
 
 void write_recording_group(const fs::path& folder, const std::string& program, std::span<const std::string> members) {
@@ -37,17 +57,16 @@ void write_recording_group(const fs::path& folder, const std::string& program, s
   write_file(folder / kSessionName, j.dump(2) + "\n");
 }
 
+void refresh_recording_group(const fs::path& folder) {
+  const auto group = read_group(folder);
+  if (group) write_recording_group(folder, group->program, group->members);
+}
+
 std::vector<fs::path> recordings_of(const fs::path& folder) {
   if (is_recording(folder)) return {folder};
-  const fs::path path = folder / kSessionName;
-  if (!fs::exists(path)) return {};
   std::vector<fs::path> recordings;
-  try {
-    const json j = json::parse(read_bytes(path));
-    if (j.value("format", "") != kGroupFormat) return {};
-    for (const json& member : j.at("members")) recordings.push_back(folder / member.at("folder").get<std::string>());
-  } catch (const json::exception& error) {
-    throw InputError(path, 0, fmt::format("is damaged: {}", error.what()), "name one of the recordings in the folder");
+  if (const auto group = read_group(folder)) {
+    for (const std::string& name : group->members) recordings.push_back(folder / name);
   }
   return recordings;
 }

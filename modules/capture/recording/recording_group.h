@@ -14,6 +14,9 @@ namespace alidade {
 void write_recording_group(const std::filesystem::path& folder, const std::string& program,
                            std::span<const std::string> members);
 
+/// Writes it again where the folder is a group, with what its members say by now (after a repair); else nothing.
+void refresh_recording_group(const std::filesystem::path& folder);
+
 /// The recordings that a folder is: itself, or the members of a group, in their order; none where it is neither.
 /// Throws InputError for a group whose session.json is damaged.
 std::vector<std::filesystem::path> recordings_of(const std::filesystem::path& folder);

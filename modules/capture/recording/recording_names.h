@@ -10,6 +10,7 @@ inline constexpr const char* kSessionName = "session.json";
 inline constexpr const char* kFramesName = "frames.csv";
 inline constexpr const char* kEventsName = "events.csv";
 inline constexpr const char* kVideoName = "video.mkv";
+inline constexpr const char* kReserveName = "reserve";  ///< NAME.part only: room to close in when the disk is full
 
 /// Where a file of a recording is: NAME, or NAME.part while it is not closed; NAME where there is neither.
 std::filesystem::path find_recorded(const std::filesystem::path& folder, const char* name);

@@ -37,11 +37,12 @@ class Repair {
       return result_;
     }
     for (const char* name : {kFramesName, kEventsName, kVideoName}) take_name_back(name);
+    AppendFile rows(folder_ / kFramesName, AppendFile::Start::AtEnd);  // so that nobody else writes meanwhile
     if (session_.codec) video_.emplace(folder_, session_);
     read_rows();
     give_up_lost_rows();
     close_video();
-    close_rows();
+    close_rows(rows);
     close_events();
     close_session();
     return result_;
@@ -127,9 +128,8 @@ class Repair {
     writer.close();
   }
 
-  void close_rows() {
+  void close_rows(AppendFile& file) {
     const std::size_t confirmed = recovered_begin_.value_or(rows_.size());
-    AppendFile file(folder_ / kFramesName, AppendFile::Start::AtEnd);
     const std::int64_t end = confirmed > 0 ? rows_[confirmed - 1].end : rows_end_;
     result_.cut_bytes += file.size() - end;
     file.cut(end);
@@ -165,6 +165,8 @@ class Repair {
       session_.files.push_back({name, crc.length(), crc.value()});
     }
     session_.is_closed = session_.is_repaired = true;
+    std::error_code ignored;
+    fs::remove(part_name(folder_ / kReserveName), ignored);
     write_session(folder_, session_);
     result_.totals = session_.totals;
   }

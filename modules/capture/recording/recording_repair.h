@@ -21,7 +21,8 @@ struct RecordingRepair {
 /// their names, and session.json its totals and checksums. Frames that are whole in the video but have no row get one,
 /// flagged "recovered": their pixels and time are known, their stamps are not. No frame that can be read is given up.
 /// Nothing is done to a closed recording; a repair that was itself interrupted is done again.
-/// Throws InputError where it is no recording or a file of it is missing, DeviceError where it cannot be written.
+/// Throws InputError where it is no recording or a file of it is missing, DeviceError where it cannot be written or is
+/// still being recorded.
 RecordingRepair repair_recording(const std::filesystem::path& folder, const ProgressSink& progress = {});
 
 }  // namespace alidade

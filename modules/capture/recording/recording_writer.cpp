@@ -42,6 +42,12 @@ void check_camera(const CameraFacts& camera) {
   }
 }
 
+// Takes room on the disk that session.json can be written in at the end.
+void take_reserve(const fs::path& folder) {
+  constexpr std::size_t kReserve = 64 << 10;
+  AppendFile(folder / kReserveName).append({std::string(kReserve, '\0')});
+}
+
 RecordedFile facts_of(const char* name, const Crc32& crc) {
   return {name, crc.length(), crc.value()};
 }
@@ -136,6 +142,7 @@ void RecordingWriter::State::check_room(std::int64_t wanted) const {
   if (session.options.max_bytes && bytes() + wanted > *session.options.max_bytes) {
     throw disk_full(fmt::format("max_bytes = {} reached", *session.options.max_bytes));
   }
+  if (session.options.keep_free_bytes == 0) return;
   struct statvfs disk {};
   if (::statvfs(folder.c_str(), &disk) != 0) return;  // the writing will tell
   const auto left = static_cast<std::int64_t>(disk.f_bavail * disk.f_frsize);
@@ -202,6 +209,7 @@ void RecordingWriter::State::close() {
   session.offset_at_end = offset.at_end();
   session.end = read_clocks();
   session.is_closed = true;
+  fs::remove(part_name(folder / kReserveName));
   write_session(folder, session);  // last: it says that all is done
 }
 
@@ -209,6 +217,7 @@ void RecordingWriter::State::stop(const std::string& limit) {
   try {
     if (is_open) close();
   } catch (const DeviceError&) {  // of a disk so full that it cannot be closed: the .part files tell all the same
+    session.is_closed = false;
   }
   throw disk_full(limit);
 }
@@ -223,6 +232,7 @@ RecordingWriter::RecordingWriter(fs::path folder, RecordingSubject subject, cons
   session.request = std::move(subject.request);
   session.options = options;
   session.start = read_clocks();
+  take_reserve(folder);
   state_ = std::make_unique<State>(std::move(folder), std::move(session));
   write_session(state_->folder, state_->session);  // last: where it is, the others are
 }

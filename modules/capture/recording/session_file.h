@@ -41,8 +41,7 @@ struct RecordingSession {
   std::optional<Timestamp> video_start;  ///< Frame::time of the first frame in the video: there its time is 0
   ClockReading start;
   std::optional<ClockReading> end;
-  /// Host time minus device time at the start and the end: the smallest of 64 frames, since a stamp is seen late and
-  /// never early. Empty where the camera stamps nothing.
+  /// Host time minus device time (ClockOffset) at the start and the end; empty where the camera stamps nothing.
   std::optional<std::chrono::nanoseconds> offset_at_start, offset_at_end;
   RecordingTotals totals;  ///< of a closed recording
   std::int64_t events = 0;

@@ -2,6 +2,7 @@
 #include "capture/recording/recording_repair.h"
 
 #include <fstream>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -64,10 +65,9 @@ TEST_F(InterruptedRecording, IsClosedWithAllItsFrames) {
   EXPECT_EQ(repair_.recovered, 0);
   EXPECT_EQ(repair_.cut_bytes, 0);
   EXPECT_FALSE(repair_.was_closed);
-  for (const char* name : {"frames.csv", "events.csv", "video.mkv"}) {
-    EXPECT_TRUE(fs::exists(path_ / name)) << name;
-    EXPECT_FALSE(fs::exists(path_ / (std::string(name) + ".part"))) << name;
-  }
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(path_)) names.insert(entry.path().filename());
+  EXPECT_EQ(names, (std::set<std::string>{"events.csv", "frames.csv", "session.json", "video.mkv"}));
   VideoReader video(path_ / "video.mkv");
   while (video.next()) {
   }
@@ -149,6 +149,17 @@ TEST_F(InterruptedRecording, WithoutAFrameIsClosedToo) {
   record(0);
   cut("frames.csv.part", 5);  // in the header
   EXPECT_EQ(frames_after_repair(), 0);
+}
+
+TEST_F(InterruptedRecording, IsLeftAloneWhileItIsRecorded) {
+  path_ = folder_ / "live";
+  RecordingWriter writer(path_, camera_);
+  writer.write(test::synthetic_frame(camera_, 0));
+  EXPECT_EQ(test::message_of(folder_.path(), [&] { repair_recording(path_); }),
+            "live/frames.csv: cannot be written: another program is writing it; wait until that has ended");
+  writer.write(test::synthetic_frame(camera_, 1));
+  writer.close();
+  EXPECT_TRUE(verify_recording(path_).faults.empty());
 }
 
 TEST_F(InterruptedRecording, ThatIsNoneIsNamed) {

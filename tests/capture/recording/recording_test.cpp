@@ -103,10 +103,8 @@ TEST_F(RecordingFolder, KeepsStampsDropsDamageAndFramesWithoutAnImage) {
   const std::vector<Frame> frames = replay();
   ASSERT_EQ(frames.size(), 6u);
   for (std::size_t i = 0; i < 6; ++i) EXPECT_TRUE(test::are_same(frames[i], written[i])) << i;
-  EXPECT_NE(fault_.find("3 frames were dropped by the camera, 2 frames were discarded since recording was too slow, "
-                        "2 frames came damaged"),
-            std::string::npos)
-      << fault_;
+  EXPECT_EQ(fault_,
+            path_.string() + ": 3 frames dropped by the camera, 2 frames discarded since recording was too slow");
   const RecordingSession session = read_session(path_);
   EXPECT_EQ(session.totals, (RecordingTotals{6, 2, 2, 0, 3, 2}));
 }
@@ -276,7 +274,7 @@ TEST_F(RecordingFolder, WhosePixelsHaveChangedSaysSo) {
   const std::vector<Frame> frames = replay();
   ASSERT_EQ(frames.size(), 3u);
   EXPECT_TRUE(frames[1].stamp.is_damaged);
-  EXPECT_NE(fault_.find("1 frames are no longer what was recorded"), std::string::npos) << fault_;
+  EXPECT_NE(fault_.find("1 frame no longer as recorded"), std::string::npos) << fault_;
 }
 
 TEST_F(RecordingFolder, ThatIsNoneIsNamed) {

@@ -138,7 +138,7 @@ TEST_F(VerifiedRecording, MayBeOneOfSeveral) {
   EXPECT_EQ(recordings_of(path_), std::vector<fs::path>{path_});
   EXPECT_TRUE(recordings_of(folder_ / "absent").empty());
   const std::string group = read_bytes(folder_ / "session.json");
-  EXPECT_NE(group.find("\"device_to_host_at_end_ns\": 1000000000000"), std::string::npos) << group;
+  EXPECT_NE(group.find("\"device_to_host_at_end_ns\": 1000000"), std::string::npos) << group;
   folder_.write("session.json", "{\"format\": \"alidade recordings\"}");
   EXPECT_NE(test::message_of(folder_.path(), [&] { recordings_of(folder_.path()); }).find("session.json: is damaged"),
             std::string::npos);
