@@ -26,14 +26,14 @@ enum class CameraTrigger {
 
 /// What the user wants of a camera; what is empty stays as the camera has it.
 struct CameraRequest {
-  std::optional<cv::Point> offset;  ///< px, of the region on the sensor
-  std::optional<cv::Size> size;     ///< px
+  std::optional<cv::Point> offset{};  ///< px, of the region on the sensor
+  std::optional<cv::Size> size{};     ///< px
   std::optional<std::string>
       pixel_format;  ///< the device's own name of it: V4L2's four characters ("YUYV"), GenICam's ("Mono12Packed")
-  std::optional<double> fps_hz;
-  std::optional<double> exposure_s;  ///< also switches an automatic exposure off
-  std::optional<double> gain;  ///< in the device's own unit (GenICam: dB, often); also switches an automatic gain off
-  std::optional<int> packet_size;  ///< bytes, GigE Vision; else the largest that comes through
+  std::optional<double> fps_hz{};
+  std::optional<double> exposure_s{};  ///< also switches an automatic exposure off
+  std::optional<double> gain{};  ///< in the device's own unit (GenICam: dB, often); also switches an automatic gain off
+  std::optional<int> packet_size{};  ///< bytes, GigE Vision; else the largest that comes through
   CameraTrigger trigger = CameraTrigger::FreeRunning;
   std::vector<std::pair<std::string, std::string>>
       settings;  ///< controls or features by name, in this order, before all others
@@ -49,9 +49,9 @@ struct CameraFacts {
   std::string serial;  ///< empty where it has none
   cv::Size size;       ///< px
   PixelFormat format;
-  std::string device_format;                         ///< the device's own name of it
-  std::optional<std::chrono::nanoseconds> period;    ///< between two frames; empty where a trigger sets it
-  std::optional<std::chrono::nanoseconds> exposure;  ///< empty where it is automatic or not told
+  std::string device_format;                           ///< the device's own name of it
+  std::optional<std::chrono::nanoseconds> period{};    ///< between two frames; empty where a trigger sets it
+  std::optional<std::chrono::nanoseconds> exposure{};  ///< empty where it is automatic or not told
   std::string clock;           ///< of CaptureStamp::device_time: "host monotonic", "camera", "PTP", ...
   bool is_host_clock = false;  ///< device_time is on HostClock's time scale
   StampedMoment stamped = StampedMoment::Unknown;

@@ -11,9 +11,9 @@ namespace alidade {
 
 /// A size that a camera offers in a format, with its frame rates.
 struct ListedSize {
-  cv::Size size;                  ///< px; the largest where a range is offered
-  std::optional<cv::Size> least;  ///< the smallest, where a range is offered
-  std::vector<double> fps_hz;     ///< offered rates, falling; of a range its two ends
+  cv::Size size;                    ///< px; the largest where a range is offered
+  std::optional<cv::Size> least{};  ///< the smallest, where a range is offered
+  std::vector<double> fps_hz;       ///< offered rates, falling; of a range its two ends
 };
 
 struct ListedFormat {

@@ -34,6 +34,7 @@ class FrameQueue : public FrameSource {
     Frame frame = std::move(frames_.front());
     frames_.pop_front();
     frame.stamp.discarded_before += std::exchange(discarded_, 0);
+    frame.stamp.dropped_before += std::exchange(dropped_, 0);
     changed_.notify_all();
     return frame;
   }
@@ -87,8 +88,7 @@ class FrameQueue : public FrameSource {
     const Frame oldest = std::move(frames_.front());
     frames_.pop_front();
     discarded_ += 1 + oldest.stamp.discarded_before;
-    Frame* const heir = frames_.empty() ? nullptr : &frames_.front();
-    if (heir) heir->stamp.dropped_before += oldest.stamp.dropped_before;
+    dropped_ += oldest.stamp.dropped_before;
     return {CaptureEventKind::FramesDiscarded, HostClock::now(), description_, oldest.index,
             fmt::format("frame {}: the queue of {} is full", oldest.index, options_.capacity)};
   }
@@ -101,7 +101,7 @@ class FrameQueue : public FrameSource {
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
   std::deque<Frame> frames_;
-  std::uint64_t discarded_ = 0;  // since the last frame taken
+  std::uint64_t discarded_ = 0, dropped_ = 0;  // since the last frame taken, by us and by the device
   std::optional<std::string> fault_;
   std::exception_ptr error_;
   bool finished_ = false;

@@ -20,9 +20,10 @@ using HostTime = HostClock::time_point;
 
 /// How a frame came out of a camera; files have none of it but what a recording kept.
 struct CaptureStamp {
-  std::optional<Timestamp> device_time;  ///< as the driver or the camera stamped it; CameraFacts::clock names its clock
-  std::optional<HostTime> host_time;     ///< when its first bytes were seen on this machine, as well as that is known
-  std::optional<std::uint64_t> sequence;  ///< the device's own count; starts anew when the device does
+  std::optional<Timestamp>
+      device_time{};                    ///< as the driver or the camera stamped it; CameraFacts::clock names its clock
+  std::optional<HostTime> host_time{};  ///< when its first bytes were seen on this machine, as well as that is known
+  std::optional<std::uint64_t> sequence{};  ///< the device's own count; starts anew when the device does
   std::uint64_t dropped_before =
       0;  ///< frames that the device counted between the last one and this, and that never came
   std::uint64_t discarded_before =

@@ -19,8 +19,8 @@ struct LiveCameraOptions {
   double first_frame_s = 2;   ///< allowed on top of that for the first frame after opening: some cameras wake slowly
   double reopen_after_s = 1;  ///< of a stall: then the camera is closed and opened anew
   double retry_s = 0.2;       ///< between two attempts to open
-  std::optional<double> give_up_s;  ///< without a frame: then next() throws; empty: never
-  bool is_triggered = false;        ///< frames come when a signal does: silence is no fault
+  std::optional<double> give_up_s{};  ///< without a frame: then next() throws; empty: never
+  bool is_triggered = false;          ///< frames come when a signal does: silence is no fault
 };
 
 /// Throws std::invalid_argument naming field, value and bound.

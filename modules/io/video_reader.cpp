@@ -17,24 +17,13 @@ extern "C" {
 
 #include "core/errors.h"
 #include "io/libav_error.h"
+#include "io/libav_handles.h"
 
 namespace alidade {
 namespace {
 
 struct CloseInput {
   void operator()(AVFormatContext* p) const { avformat_close_input(&p); }
-};
-struct FreeCodec {
-  void operator()(AVCodecContext* p) const { avcodec_free_context(&p); }
-};
-struct FreeFrame {
-  void operator()(AVFrame* p) const { av_frame_free(&p); }
-};
-struct FreePacket {
-  void operator()(AVPacket* p) const { av_packet_free(&p); }
-};
-struct FreeScaler {
-  void operator()(SwsContext* p) const { sws_freeContext(p); }
 };
 
 std::optional<double> positive(AVRational rate) {
@@ -47,19 +36,19 @@ bool is_grey(const AVFrame& frame) {
 }
 
 // Chroma is interpolated and rounding is exact, so that the pixels do not depend on the processor.
-std::unique_ptr<SwsContext, FreeScaler> make_scaler(const AVFrame& frame) {
+LibavHandle<SwsContext> make_scaler(const AVFrame& frame) {
   const AVPixFmtDescriptor* format = av_pix_fmt_desc_get(static_cast<AVPixelFormat>(frame.format));
   const bool rgb = (format->flags & AV_PIX_FMT_FLAG_RGB) != 0;
   // SWS_POINT alone reorders the bytes of RGB; with the other flags swscale goes by way of YUV and loses digits.
   const int flags = rgb ? SWS_POINT : SWS_BILINEAR | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT | SWS_BITEXACT;
   SwsContext* scaler = sws_getContext(frame.width, frame.height, static_cast<AVPixelFormat>(frame.format), frame.width,
                                       frame.height, AV_PIX_FMT_BGR24, flags, nullptr, nullptr, nullptr);
-  if (!scaler || rgb) return std::unique_ptr<SwsContext, FreeScaler>(scaler);
+  if (!scaler || rgb) return LibavHandle<SwsContext>(scaler);
   const int space = frame.colorspace == AVCOL_SPC_UNSPECIFIED ? SWS_CS_DEFAULT : static_cast<int>(frame.colorspace);
   const int full_range = frame.color_range == AVCOL_RANGE_JPEG ? 1 : 0;
   sws_setColorspaceDetails(scaler, sws_getCoefficients(space), full_range, sws_getCoefficients(SWS_CS_DEFAULT), 1, 0,
                            1 << 16, 1 << 16);
-  return std::unique_ptr<SwsContext, FreeScaler>(scaler);
+  return LibavHandle<SwsContext>(scaler);
 }
 
 // Whether every slice of an FFV1 frame has its checksum; libav's decoder paints over a slice that has not, in silence.
@@ -85,10 +74,10 @@ struct VideoReader::State {
   std::filesystem::path path;
   VideoFacts facts;
   std::unique_ptr<AVFormatContext, CloseInput> input;
-  std::unique_ptr<AVCodecContext, FreeCodec> decoder;
-  std::unique_ptr<AVFrame, FreeFrame> frame{av_frame_alloc()};
-  std::unique_ptr<AVPacket, FreePacket> packet{av_packet_alloc()};
-  std::unique_ptr<SwsContext, FreeScaler> scaler;
+  LibavHandle<AVCodecContext> decoder;
+  LibavHandle<AVFrame> frame{av_frame_alloc()};
+  LibavHandle<AVPacket> packet{av_packet_alloc()};
+  LibavHandle<SwsContext> scaler;
   int scaler_format = -1;
   AVStream* stream = nullptr;
   double end_s = 0;  // of the last packet

@@ -22,7 +22,7 @@ struct VideoOptions {
   int rate_factor = 20;
 };
 
-/// Writes a video through libav, checking every write; it is called NAME.part until close() returns.
+/// Writes a video, checking every write; it is called NAME.part until close() returns.
 /// Every call throws DeviceError where the file system refuses (full disk, no permission).
 /// A movie that is never closed is removed (MP4 keeps its index at the end); a lossless NAME.part stays.
 class VideoWriter {

@@ -20,7 +20,9 @@ class Counter : public FrameSource {
     if (next_ == count_ && broken_) throw InputError("frame.jpg", 0, "damaged", "");
     if (next_ == count_) return std::nullopt;
     ++*given_;
-    return Frame{next_++, {}, "", cv::Mat(1, 1, CV_8U)};
+    Frame frame{next_++, {}, "", cv::Mat(1, 1, CV_8U)};
+    frame.stamp.dropped_before = frame.index > 0;
+    return frame;
   }
   std::optional<int> frame_count() const override { return count_; }
   bool has_times() const override { return true; }
@@ -67,6 +69,39 @@ TEST(FrameQueue, StopsAtItsCapacityAndWhenItDies) {
     EXPECT_LE(given, 6);  // one taken, four queued, one waiting for room
   }
   EXPECT_LE(given, 6);
+}
+
+TEST(FrameQueue, GivesUpTheOldestWhereItIsToldToAndCountsThem) {
+  std::atomic<int> given = 0;
+  std::atomic<int> events = 0;
+  QueueOptions options{2, WhenFull::DropOldest,
+                       [&](const CaptureEvent& event) { events += event.kind == CaptureEventKind::FramesDiscarded; }};
+  const auto source = queued(std::make_unique<Counter>(100, false, &given), options);
+  while (events < 98) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  const auto newest_but_one = source->next();
+  EXPECT_EQ(newest_but_one->index, 98);
+  EXPECT_EQ(newest_but_one->stamp.discarded_before, 98u);
+  EXPECT_EQ(newest_but_one->stamp.dropped_before, 98u);  // one before each
+  EXPECT_EQ(source->next()->stamp.discarded_before, 0u);
+}
+
+TEST(FrameQueue, LetsGoOfAWaitingReaderWhoIsToldToStop) {
+  class Silence : public Counter {
+   public:
+    using Counter::Counter;
+    std::optional<Frame> next(std::stop_token stop) override {
+      while (!stop.stop_requested()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      return std::nullopt;
+    }
+  };
+  std::atomic<int> given = 0;
+  const auto source = queued(std::make_unique<Silence>(1, false, &given));
+  std::stop_source stop;
+  std::jthread asker([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    stop.request_stop();
+  });
+  EXPECT_FALSE(source->next(stop.get_token()));
 }
 
 TEST(FrameQueue, NeedsASourceAndRoom) {

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/capture/recording/killed_recording.h"
+
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "capture/recording/recording_repair.h"
+#include "capture/recording/recording_verification.h"
+#include "tests/capture/recording/synthetic_camera.h"
+#include "tests/support/temporary_directory.h"
+
+namespace alidade {
+namespace {
+
+TEST(KilledRecording, LosesNoConfirmedFrameAndIsReadableAsItIs) {
+  const test::TemporaryDirectory folder;
+  std::mt19937 random(6);
+  const std::vector<PixelFormat> formats = test::all_pixel_formats();
+  for (std::size_t i = 0; i < 5; ++i) {
+    const RecordingSubject camera = test::synthetic_camera(formats[i], {160, 120});
+    const auto delay = std::chrono::microseconds(std::uniform_int_distribution(20'000, 120'000)(random));
+    const auto path = folder / std::to_string(i);
+    const test::KilledRecording killed = test::record_and_kill(path, camera, {}, delay);
+    SCOPED_TRACE(fmt::format("{} after {} us, {} captured", name_of(formats[i]), delay.count(), killed.captured));
+    EXPECT_EQ(killed.read_by_us, killed.confirmed);
+    EXPECT_EQ(killed.wrong, 0);
+    EXPECT_LE(killed.captured - killed.confirmed, 3);
+    // A JPEG of noise is no picture that ffprobe could decode.
+    const bool is_probed = killed.by_ffprobe && formats[i].kind != PixelKind::Jpeg;
+    EXPECT_TRUE(!is_probed || *killed.by_ffprobe >= killed.confirmed) << *killed.by_ffprobe;
+    const RecordingRepair repair = repair_recording(path);
+    EXPECT_EQ(repair.lost, 0);
+    EXPECT_EQ(repair.totals.frames, killed.confirmed + repair.recovered);
+    const RecordingVerification verification = verify_recording(path);
+    for (const RecordingFault& fault : verification.faults) ADD_FAILURE() << fault.path << ": " << fault.what;
+  }
+}
+
+}  // namespace
+}  // namespace alidade
