@@ -12,7 +12,7 @@
 
 namespace alidade {
 
-FeedReader::FeedReader(Descriptor descriptor, FeedAddress::Kind kind, std::size_t capacity,
+FeedReader::FeedReader(OpenFile descriptor, FeedAddress::Kind kind, std::size_t capacity,
                        std::function<std::string(std::uint64_t)> loss_notice)
     : descriptor_(std::move(descriptor)), kind_(kind), loss_notice_(std::move(loss_notice)), lines_(capacity) {}
 

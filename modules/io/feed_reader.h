@@ -14,7 +14,7 @@ class FeedReader {
  public:
   /// `descriptor`: a socket that does not block; of Kind::StandardOutput any descriptor, written to only as much as it
   /// takes at once after poll. `loss_notice`: the line that tells of so many lost ones.
-  FeedReader(Descriptor descriptor, FeedAddress::Kind kind, std::size_t capacity,
+  FeedReader(OpenFile descriptor, FeedAddress::Kind kind, std::size_t capacity,
              std::function<std::string(std::uint64_t)> loss_notice);
 
   int descriptor() const { return descriptor_.number(); }
@@ -42,7 +42,7 @@ class FeedReader {
   void discard_input();
   long write_block(const char* bytes, std::size_t size) const;
 
-  Descriptor descriptor_;
+  OpenFile descriptor_;
   FeedAddress::Kind kind_;
   std::function<std::string(std::uint64_t)> loss_notice_;
   LineQueue lines_;

@@ -39,11 +39,11 @@ AddressList resolve(const FeedAddress& address) {
   throw DeviceError(to_string(address), "resolve the name", reason, "check the name, or give the address in numbers");
 }
 
-Descriptor open_socket(const addrinfo& at) {
-  return Descriptor(::socket(at.ai_family, at.ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, at.ai_protocol));
+OpenFile open_socket(const addrinfo& at) {
+  return OpenFile(::socket(at.ai_family, at.ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, at.ai_protocol));
 }
 
-void switch_on(const Descriptor& socket, int level, int option) {
+void switch_on(const OpenFile& socket, int level, int option) {
   const int on = 1;
   ::setsockopt(socket.number(), level, option, &on, sizeof on);
 }
@@ -58,15 +58,15 @@ void switch_on(const Descriptor& socket, int level, int option) {
 
 }  // namespace
 
-Descriptor::~Descriptor() {
+OpenFile::~OpenFile() {
   if (number_ >= 0) ::close(number_);
 }
 
-Descriptor listen_at(const FeedAddress& address) {
+OpenFile listen_at(const FeedAddress& address) {
   const AddressList found = resolve(address);
   int error = 0;
   for (const addrinfo* at = found.get(); at; at = at->ai_next) {
-    Descriptor socket = open_socket(*at);
+    OpenFile socket = open_socket(*at);
     switch_on(socket, SOL_SOCKET, SO_REUSEADDR);  // connections of an earlier run that linger do not matter
     const bool listens =
         socket && ::bind(socket.number(), at->ai_addr, at->ai_addrlen) == 0 && ::listen(socket.number(), kBacklog) == 0;
@@ -76,7 +76,7 @@ Descriptor listen_at(const FeedAddress& address) {
   fail(address, "listen", error);
 }
 
-int port_of(const Descriptor& listener) {
+int port_of(const OpenFile& listener) {
   sockaddr_storage name{};
   socklen_t size = sizeof name;
   ::getsockname(listener.number(), reinterpret_cast<sockaddr*>(&name), &size);
@@ -84,19 +84,19 @@ int port_of(const Descriptor& listener) {
   return ntohs(reinterpret_cast<const sockaddr_in&>(name).sin_port);
 }
 
-Descriptor accept_reader(const Descriptor& listener) {
-  Descriptor reader(::accept4(listener.number(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+OpenFile accept_reader(const OpenFile& listener) {
+  OpenFile reader(::accept4(listener.number(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
   if (!reader) return reader;
   switch_on(reader, IPPROTO_TCP, TCP_NODELAY);
   ::setsockopt(reader.number(), SOL_SOCKET, SO_SNDBUF, &kSendBytes, sizeof kSendBytes);
   return reader;
 }
 
-Descriptor open_udp(const FeedAddress& address) {
+OpenFile open_udp(const FeedAddress& address) {
   const AddressList found = resolve(address);
   int error = 0;
   for (const addrinfo* at = found.get(); at; at = at->ai_next) {
-    Descriptor socket = open_socket(*at);
+    OpenFile socket = open_socket(*at);
     if (socket && ::connect(socket.number(), at->ai_addr, at->ai_addrlen) == 0) return socket;
     error = errno;
   }

@@ -8,13 +8,13 @@
 namespace alidade {
 
 /// An open file descriptor that is closed with its owner.
-class Descriptor {
+class OpenFile {
  public:
-  Descriptor() = default;
-  explicit Descriptor(int number) : number_(number) {}
-  ~Descriptor();
-  Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
+  OpenFile() = default;
+  explicit OpenFile(int number) : number_(number) {}
+  ~OpenFile();
+  OpenFile(OpenFile&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+  OpenFile& operator=(OpenFile&& other) noexcept {
     std::swap(number_, other.number_);
     return *this;
   }
@@ -28,17 +28,17 @@ class Descriptor {
 
 /// A TCP socket that listens at the address, without blocking. Throws DeviceError: a name that does not resolve, an
 /// address that is not this machine's, a port in use.
-Descriptor listen_at(const FeedAddress& address);
+OpenFile listen_at(const FeedAddress& address);
 
 /// The port at which a socket listens.
-int port_of(const Descriptor& listener);
+int port_of(const OpenFile& listener);
 
 /// The next reader that waits at a listening socket: without blocking, its packets leave at once, and the system keeps
 /// little of what it has not read. Empty where none waits.
-Descriptor accept_reader(const Descriptor& listener);
+OpenFile accept_reader(const OpenFile& listener);
 
 /// A UDP socket whose datagrams go to the address, without blocking. Throws DeviceError for a name that does not
 /// resolve or an address that cannot be reached.
-Descriptor open_udp(const FeedAddress& address);
+OpenFile open_udp(const FeedAddress& address);
 
 }  // namespace alidade

@@ -42,7 +42,7 @@ LineFeed::LineFeed(const FeedAddress& address, FeedOptions options)
       add_reader(open_udp(address));
       break;
     case FeedAddress::Kind::StandardOutput:
-      add_reader(Descriptor(::dup(STDOUT_FILENO)));
+      add_reader(OpenFile(::dup(STDOUT_FILENO)));
       break;
   }
 }
@@ -67,7 +67,7 @@ void LineFeed::wake() const {
   ::eventfd_write(wake_.number(), 1);
 }
 
-void LineFeed::add_reader(Descriptor descriptor) {
+void LineFeed::add_reader(OpenFile descriptor) {
   readers_.emplace_back(std::move(descriptor), address_.kind, options_.capacity, options_.loss_notice);
   if (address_.kind != FeedAddress::Kind::Udp) readers_.back().lines().push(options_.greeting);
   ++tally_.readers;
@@ -106,7 +106,7 @@ void LineFeed::wait_and_serve(int timeout_ms) {
   for (std::size_t i = 0; i < readers_.size(); ++i) readers_[i].react(waiting[i + 1].revents);
   const bool somebody_comes = has_room && waiting.back().revents != 0;
   if (!somebody_comes) return;
-  if (Descriptor reader = accept_reader(listener_)) {
+  if (OpenFile reader = accept_reader(listener_)) {
     add_reader(std::move(reader));
   } else {
     ::poll(nullptr, 0, kRetryMs);

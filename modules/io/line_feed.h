@@ -58,15 +58,15 @@ class LineFeed {
 
   void wake() const;
   bool hand_out();
-  void add_reader(Descriptor descriptor);
+  void add_reader(OpenFile descriptor);
   void wait_and_serve(int timeout_ms);
   void forget_gone();
   bool is_over(bool closing);
 
   FeedAddress address_;
   FeedOptions options_;
-  Descriptor listener_;  // of TCP
-  Descriptor wake_;      // an event: there are lines, or it is over
+  OpenFile listener_;  // of TCP
+  OpenFile wake_;      // an event: there are lines, or it is over
   std::deque<FeedReader> readers_;
   std::optional<Clock::time_point> greeted_, deadline_;
   FeedTally tally_;

@@ -61,7 +61,7 @@ class Reader {
   void finish_speaking() const { ::shutdown(socket_.number(), SHUT_WR); }
 
  private:
-  Descriptor socket_;
+  OpenFile socket_;
   std::string text_;
 };
 
@@ -181,7 +181,7 @@ TEST(LineFeed, NeedsNoReader) {
 }
 
 TEST(LineFeed, SendsADatagramPerLineAndGreetsFirst) {
-  const Descriptor receiver(::socket(AF_INET, SOCK_DGRAM, 0));
+  const OpenFile receiver(::socket(AF_INET, SOCK_DGRAM, 0));
   sockaddr_in address = loopback(0);
   ASSERT_EQ(::bind(receiver.number(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
   const timeval patience{1, 0};
@@ -200,7 +200,7 @@ TEST(LineFeed, SendsADatagramPerLineAndGreetsFirst) {
 TEST(LineFeed, DoesNotMindDatagramsThatNobodyTakes) {
   int port = 0;
   {
-    const Descriptor taken(::socket(AF_INET, SOCK_DGRAM, 0));
+    const OpenFile taken(::socket(AF_INET, SOCK_DGRAM, 0));
     const sockaddr_in address = loopback(0);
     ASSERT_EQ(::bind(taken.number(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
     port = port_of(taken);
