@@ -3,10 +3,10 @@
 
 namespace alidade {
 
-void DeviceOffset::observe(const Frame& frame, const CameraFacts& camera) {
+void DeviceOffset::observe(Timestamp time, const CaptureStamp& stamp, const CameraFacts& camera) {
   constexpr int kStart = 64;  // frames
-  if (!frame.stamp.device_time) return;
-  at_end_ = frame.time - stamp_to_middle(camera) - *frame.stamp.device_time;
+  if (!stamp.device_time) return;
+  at_end_ = time - stamp_to_middle(camera) - *stamp.device_time;
   if (seen_++ < kStart) at_start_ = at_end_;
 }
 

@@ -13,7 +13,8 @@ namespace alidade {
 /// LiveCamera put on the host's clock, has it.
 class DeviceOffset {
  public:
-  void observe(const Frame& frame, const CameraFacts& camera);
+  /// A frame's Frame::time and stamp.
+  void observe(Timestamp time, const CaptureStamp& stamp, const CameraFacts& camera);
 
   /// After the first 64 frames that tell both times, or as many as came; empty before the first.
   std::optional<std::chrono::nanoseconds> at_start() const { return at_start_; }

@@ -181,7 +181,7 @@ void RecordingWriter::State::write(const Frame& frame) {
     throw;
   }
   session.totals.add(row);
-  offset.observe(frame, session.camera);
+  offset.observe(frame.time, frame.stamp, session.camera);
   write_back();
 }
 
