@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <linux/videodev2.h>
@@ -147,7 +148,12 @@ V4l2Grant negotiate(const V4l2Device& device, const CameraRequest& request) {
   if (format.code() != chosen->format->code || format.size() != size) throw not_offered(device, offers, request, size);
   if (request.offset) move_region(device, *request.offset, size);
   if (request.fps_hz) set_rate(device, chosen->periods, *request.fps_hz);
-  return {chosen->format, size, format.strides(), granted_period(device)};
+  std::vector<std::size_t> strides = format.strides();
+  for (std::size_t& stride : strides) {  // some drivers leave out what the format says anyway
+    if (stride == 0 && chosen->format->pixels.kind != PixelKind::Jpeg)
+      stride = v4l2_row_bytes(*chosen->format, size.width);
+  }
+  return {chosen->format, size, std::move(strides), granted_period(device)};
 }
 
 }  // namespace alidade
