@@ -49,12 +49,14 @@ TEST_F(CameraFeatures, OfEveryKindAreSet) {
   set("AcquisitionFrameRate", "12.5");
   set("GainAuto", "Continuous");
   set("TestBoolean", "true");
+  set("TestStringReg", "seven");
   set("TriggerSoftware", "1");
   EXPECT_EQ(value_of("Width"), "640");
   EXPECT_EQ(value_of("Height"), "128");
   EXPECT_DOUBLE_EQ(std::stod(value_of("AcquisitionFrameRate")), 12.5);
   EXPECT_EQ(value_of("GainAuto"), "Continuous");
   EXPECT_EQ(value_of("TestBoolean"), "true");
+  EXPECT_EQ(value_of("TestStringReg"), "seven");
 }
 
 TEST_F(CameraFeatures, OfAWrongNameAreRefusedWithTheNearest) {
