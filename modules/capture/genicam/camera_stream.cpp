@@ -8,9 +8,9 @@
 
 #include <arv.h>
 #include <netinet/in.h>
-#include <sys/resource.h>
 #include <sys/socket.h>
-#include <unistd.h>
+
+#include "capture/genicam/thread_urgency.h"
 
 namespace alidade {
 namespace {
@@ -31,8 +31,7 @@ constexpr std::size_t kLeastBuffers = 8, kMostBuffers = 400, kMostBufferBytes = 
 constexpr int kSocketBytes = 32 << 20;
 
 void begin_receiving(void*, ArvStreamCallbackType type, ArvBuffer*) {
-  // Packets that nobody fetches in time are lost. Where we may not, it stays as it is.
-  if (type == ARV_STREAM_CALLBACK_TYPE_INIT) setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), -10);
+  if (type == ARV_STREAM_CALLBACK_TYPE_INIT) make_this_thread_urgent();  // packets not fetched in time are lost
 }
 
 bool is_udp_socket_at(int fd, int port) {

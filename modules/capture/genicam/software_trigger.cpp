@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "capture/genicam/thread_urgency.h"
+
 namespace alidade {
 
 HostTime next_multiple(HostTime now, std::chrono::nanoseconds period) {
@@ -17,6 +19,7 @@ SoftwareTrigger::SoftwareTrigger(std::chrono::nanoseconds period, std::function<
 }
 
 void SoftwareTrigger::run(std::stop_token stop) {
+  make_this_thread_urgent();
   std::unique_lock lock(mutex_);
   while (!stop.stop_requested()) {
     stopped_.wait_until(lock, stop, next_multiple(HostClock::now(), period_), [] { return false; });
