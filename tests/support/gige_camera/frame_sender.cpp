@@ -144,7 +144,8 @@ void FrameSender::send_test_packet(std::size_t packet_size, const Peer& to) cons
 
 std::shared_ptr<OutgoingFrame> FrameSender::spare_frame() {
   const std::lock_guard lock(mutex_);
-  if (kept_.size() < options_.kept_frames || kept_.front().use_count() > 1) return std::make_shared<OutgoingFrame>();
+  if (kept_.empty() || kept_.size() < options_.kept_frames || kept_.front().use_count() > 1)
+    return std::make_shared<OutgoingFrame>();
   const std::shared_ptr<OutgoingFrame> spare = kept_.front();
   kept_.pop_front();
   return spare;
