@@ -23,11 +23,12 @@ CaptureEventKind event_of(CameraTrouble trouble) {
   return trouble == CameraTrouble::Busy ? CaptureEventKind::InUse : CaptureEventKind::OpenFailed;
 }
 
-// V4L2 counts in 32 bits: a small count after a large one goes on behind the wrap. Empty where the count started anew.
+// V4L2 counts in 32 bits: a small count after a large one goes on behind the wrap. Some drivers give a count twice when
+// they are late. Empty where the count started anew.
 std::optional<std::uint64_t> steps_between(std::uint64_t last, std::uint64_t next) {
-  if (next > last) return next - last;
+  if (next >= last) return next - last;
   const auto wrapped = static_cast<std::uint32_t>(next - last);
-  const bool near_wrap = last >> 32 == 0 && wrapped != 0 && wrapped < 10'000;
+  const bool near_wrap = last >> 32 == 0 && wrapped < 10'000;
   return near_wrap ? std::optional<std::uint64_t>(wrapped) : std::nullopt;
 }
 

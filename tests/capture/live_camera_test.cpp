@@ -128,6 +128,12 @@ TEST_F(LiveCameraTest, TellsOfADeviceThatCountsAnew) {
   EXPECT_EQ(kinds(), (std::vector{Kind::Opened, Kind::Streaming, Kind::Restarted}));
 }
 
+TEST_F(LiveCameraTest, TakesACountThatComesTwiceForNoFault) {
+  const auto camera = open({{frame(5), frame(5), frame(6)}});
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(camera->next()->stamp.dropped_before, 0u);
+  EXPECT_EQ(kinds(), (std::vector{Kind::Opened, Kind::Streaming}));
+}
+
 TEST_F(LiveCameraTest, FlagsDamage) {
   const auto camera = open({{Act{1, {}, false, true}}});
   EXPECT_TRUE(camera->next()->stamp.is_damaged);
