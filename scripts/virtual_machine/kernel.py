@@ -21,8 +21,12 @@ class Unavailable(Exception):
 
 
 def run(command, **options):
-    """Its output; Unavailable with the last line of its complaint where it fails."""
-    done = subprocess.run(command, capture_output=True, text=True, env={**os.environ, "LC_ALL": "C.UTF-8"}, **options)
+    """Its output; Unavailable with the last line of its complaint where it fails, or where it takes a minute."""
+    environment = {**os.environ, "LC_ALL": "C.UTF-8"}
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=60, env=environment, **options)
+    except subprocess.TimeoutExpired:
+        raise Unavailable(f"{command[0]} took longer than a minute") from None
     if done.returncode != 0:
         complaint = (done.stderr.strip() or done.stdout.strip()).splitlines()
         raise Unavailable(f"{command[0]} failed: {complaint[-1] if complaint else done.returncode}")

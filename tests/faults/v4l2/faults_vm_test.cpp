@@ -177,7 +177,7 @@ HostTime pull_plug(milliseconds delay) {
 }
 
 std::optional<Unplugging> unplug(LiveWebcam& camera, milliseconds delay) {
-  if (!camera.read(5)) return std::nullopt;
+  if (!camera.read(3)) return std::nullopt;
   const HostTime begin = HostClock::now();
   auto plugged_in = std::async(std::launch::async, pull_plug, delay);
   HostTime last = begin;
@@ -194,7 +194,7 @@ std::optional<Unplugging> unplug(LiveWebcam& camera, milliseconds delay) {
 
 TEST_F(V4l2FaultsInTheMachine, AreOverSoonAfterTheCameraIsPluggedInAgain) {
   const int cycles = parameter("ALIDADE_CYCLES", 5);
-  const double fps_hz = 30;
+  const double fps_hz = 15;  // so that two periods are more than what the emulated machine may be held up for
   LiveWebcam camera(fps_hz);
   ASSERT_TRUE(unplug(camera, milliseconds(10)));  // what is made at the first use is no leak
   const int descriptors = open_descriptors();
@@ -202,7 +202,7 @@ TEST_F(V4l2FaultsInTheMachine, AreOverSoonAfterTheCameraIsPluggedInAgain) {
   int recovered = 0, in_time = 0;
   double slowest_event_s = 0, slowest_back_s = 0;
   for (int i = 0; i < cycles; ++i) {
-    const auto told = unplug(camera, milliseconds(20 + 7 * i % 33));  // at all phases of the period
+    const auto told = unplug(camera, milliseconds(20 + 7 * i % 67));  // at all phases of the period
     if (!told) continue;
     ++recovered;
     slowest_event_s = std::max(slowest_event_s, told->event_s);
@@ -212,6 +212,7 @@ TEST_F(V4l2FaultsInTheMachine, AreOverSoonAfterTheCameraIsPluggedInAgain) {
   report("v4l2_unplug_cycles", cycles);
   report("v4l2_unplug_recovered", recovered);
   report("v4l2_unplug_in_time", in_time);
+  report("v4l2_unplug_event_s", slowest_event_s);
   report("v4l2_unplug_event_periods", slowest_event_s * fps_hz);
   report("v4l2_unplug_streaming_again_s", slowest_back_s);
   report("v4l2_unplug_more_descriptors", open_descriptors() - descriptors);
