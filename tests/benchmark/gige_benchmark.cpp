@@ -21,7 +21,6 @@
 namespace alidade::test {
 namespace {
 
-constexpr const char* kOurAddress = "127.0.0.33";
 constexpr const char* kAravisAddress = "127.0.0.1";  // its camera listens on addresses of interfaces only
 constexpr int kPacketSize = 8996;                    // bytes, as through a network of jumbo frames
 constexpr double kExposure_s = 20e-6;
@@ -151,9 +150,10 @@ class AravisCameraProcess {
 using Client = void (*)(benchmark::State&, const char*, cv::Size, double);
 
 void from_test_camera(benchmark::State& state, Client client, cv::Size size, const char* link) {
-  const CameraProcess camera(ALIDADE_GIGE_TEST_CAMERA, {"--address", kOurAddress, "--link", link});
+  const std::string address = loopback_address(1);
+  const CameraProcess camera(ALIDADE_GIGE_TEST_CAMERA, {"--address", address, "--link", link});
   constexpr double kMostFps = 100'000;
-  client(state, kOurAddress, size, kMostFps);
+  client(state, address.c_str(), size, kMostFps);
 }
 
 void from_aravis_camera(benchmark::State& state, Client client, cv::Size size) {

@@ -16,11 +16,12 @@ namespace alidade::test {
 struct FaultBench {
   std::filesystem::path camera_program;
   std::filesystem::path folder;  ///< for logs
-  std::string address = "127.0.0.31";
-  std::string other_address = "127.0.0.32";
+  std::string address = loopback_address(1);
+  std::string other_address = loopback_address(2);
   int cycles = 3;                           ///< of faults that are tried again and again
   int frames = 200;                         ///< of a run in which packets are lost
   double clocks_s = 6;                      ///< of a run in which clocks are compared
+  bool is_compared = false;                 ///< the same is tried with Aravis alone, where it takes its time
   std::vector<double> losses{0.005, 0.02};  ///< shares of packets
 
   /// Starts the camera there, its log in `log_of(address)`.

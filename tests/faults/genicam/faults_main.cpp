@@ -51,6 +51,7 @@ int run(int argc, char** argv) {
   app.add_option("--clocks", bench.clocks_s, "s, of comparing clocks")->capture_default_str();
   app.add_option("--address", bench.address, "of this machine, for the camera")->capture_default_str();
   app.add_option("--other-address", bench.other_address, "for a second camera")->capture_default_str();
+  app.add_flag("--compare", bench.is_compared, "with Aravis alone beside it (kill)");
   app.add_flag("--json", is_json, "one JSON object a line for each figure");
   app.footer(list_of_sections());
   CLI11_PARSE(app, argc, argv);

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -37,6 +38,13 @@ struct Pipe {
 }
 
 }  // namespace
+
+// All of 127.0.0.0/8 is this machine's: 20 bits of the number of the process and 4 of `n`.
+std::string loopback_address(int n) {
+  const auto process = static_cast<unsigned>(::getpid()) & 0xfffffU;
+  return fmt::format("127.{}.{}.{}", 16U * static_cast<unsigned>(n) + (process >> 16U), (process >> 8U) & 0xffU,
+                     process & 0xffU);
+}
 
 CameraProcess::CameraProcess(const std::filesystem::path& program, const std::vector<std::string>& arguments) {
   std::vector<std::string> all{program.string()};

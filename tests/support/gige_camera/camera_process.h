@@ -10,6 +10,9 @@
 
 namespace alidade::test {
 
+/// The `n`-th address of this machine (1 to 15) for cameras of this process: no other process has it.
+std::string loopback_address(int n);
+
 /// A gige_test_camera of its own, so that it can be stopped and killed. It ends with its owner, and with the thread
 /// that started it.
 class CameraProcess {

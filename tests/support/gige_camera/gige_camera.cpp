@@ -7,6 +7,7 @@ namespace alidade::test {
 namespace {
 
 constexpr std::chrono::milliseconds kIdle(20);  // between two looks at the heartbeat
+constexpr int kHeldFrames = 4;                  // exposed, and not yet sent
 constexpr std::size_t kWaitingTriggers = 4;     // more are ignored, as a camera does that is still busy
 
 std::uint16_t frame_id(std::uint16_t first, std::uint64_t frame) {
@@ -174,7 +175,8 @@ std::optional<HostTime> GigeCamera::next_exposure(const std::stop_token& stop, s
   }
   const HostTime now = HostClock::now();
   HostTime start = last ? *last + std::max(settings.period, settings.exposure) : now;
-  if (start + settings.exposure < now) start = now - settings.exposure;  // it exposed while we were sending
+  // It exposes on time even where this machine is late; but it holds only so many frames.
+  if (now - (start + settings.exposure) > kHeldFrames * settings.period) start = now - settings.exposure;
   if (start < stalled_until_) start = stalled_until_;
   return wait_until(lock, stop, start) ? std::optional(start) : std::nullopt;
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/gige_camera/picture_source.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <opencv2/core.hpp>
 
 #include "io/image_files.h"
 #include "tests/support/input_error.h"

@@ -2,6 +2,7 @@
 #include "tests/support/gige_camera/test_pattern.h"
 
 #include <gtest/gtest.h>
+#include <opencv2/core.hpp>
 
 #include "tests/support/gige_camera/payload_format.h"
 
