@@ -85,8 +85,7 @@ json kill_trials(const fs::path& folder, int count, unsigned seed) {
     lost += killed.confirmed - killed.read_by_us;
     wrong += killed.wrong;
     most_unconfirmed = std::max(most_unconfirmed, killed.captured - killed.confirmed);
-    // ffprobe would have to decode a JPEG, and noise is none.
-    if (killed.by_ffprobe && camera.camera.format.kind != PixelKind::Jpeg) {
+    if (killed.by_ffprobe) {
       ++probed;
       lost_by_ffprobe += std::max(0, killed.confirmed - *killed.by_ffprobe);
     }
