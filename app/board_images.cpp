@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <tbb/parallel_for.h>
 
+#include "app/frame_sources.h"
 #include "calib/boards/board_detection.h"
 #include "calib/boards/board_guess.h"
 #include "calib/boards/board_text.h"
@@ -35,11 +36,16 @@ cv::Mat to_thumbnail(const cv::Mat& grey) {
   return small;
 }
 
-std::vector<cv::Mat> first_images(const std::string& source) {
-  const auto frames = open_files(source);
+std::unique_ptr<FrameSource> open_images_of_board(const std::string& source) {
+  if (!is_camera_name(source)) return open_files(source);
+  throw InputError(source, 0, "is a live camera",
+                   "take its views with 'alidade guide " + source + " -o capture' and give capture/images");
+}
+
+std::vector<cv::Mat> first_images(FrameSource& frames) {
   std::vector<cv::Mat> greys;
   while (greys.size() < kGuessImages) {
-    const auto frame = frames->next();
+    const auto frame = frames.next();
     if (!frame) break;
     greys.push_back(to_grey(frame->image).clone());
   }
@@ -93,7 +99,7 @@ bool is_mirrored(const std::vector<cv::Mat>& greys, const Board& board) {
 }
 
 [[noreturn]] void refuse_without_board(const BoardImages& images, const Board& board) {
-  const std::vector<cv::Mat> greys = first_images(images.source);
+  const std::vector<cv::Mat> greys = first_images(*open_files(images.source));
   if (is_mirrored(greys, board)) {
     throw InputError(images.source, 0, fmt::format("the images show a mirrored {}", describe(board)),
                      "switch off the mirroring of the camera or of the program that took them");
@@ -118,7 +124,12 @@ bool is_mirrored(const std::vector<cv::Mat>& greys, const Board& board) {
 
 BoardChoice choose_board(const std::string& text, const std::string& source) {
   if (!text.empty()) return {parse_board(text), false, false};
-  const std::vector<cv::Mat> greys = first_images(source);
+  return choose_board(text, source, *open_images_of_board(source));
+}
+
+BoardChoice choose_board(const std::string& text, const std::string& source, FrameSource& frames) {
+  if (!text.empty()) return {parse_board(text), false, false};
+  const std::vector<cv::Mat> greys = first_images(frames);
   const auto guess = guess_board(greys);
   if (!guess) {
     throw InputError(source, 0, fmt::format("no calibration board is seen in the first {} images", greys.size()),
@@ -129,7 +140,7 @@ BoardChoice choose_board(const std::string& text, const std::string& source) {
 
 BoardImages read_board_images(const std::string& source, const Board& board, const RunContext& context,
                               FilmViews kept) {
-  const auto frames = open_files(source);
+  const auto frames = open_images_of_board(source);
   const auto count = frames->frame_count();
   BoardImages images;
   images.source = source;

@@ -11,6 +11,7 @@
 #include "calib/boards/board.h"
 #include "calib/boards/board_view.h"
 #include "calib/cameras/camera_start.h"
+#include "capture/frame_source.h"
 
 namespace alidade {
 
@@ -24,6 +25,9 @@ struct BoardChoice {
 /// The board that `text` (--board) says, or, where that is empty, the one that the first images of `source` show.
 /// Throws InputError where the text says none, and where none is seen.
 BoardChoice choose_board(const std::string& text, const std::string& source);
+
+/// The same, from the next frames of an opened source, which are gone then.
+BoardChoice choose_board(const std::string& text, const std::string& source, FrameSource& frames);
 
 /// An image in which the board was looked for.
 struct BoardImage {
@@ -47,7 +51,7 @@ struct BoardImages {
 enum class FilmViews { StillAndDistinct, All };
 
 /// Looks for the board in every image of a folder, glob, list or video. Throws InputError where an image is damaged or
-/// of another size, and where no image shows the board: then with what they seem to show.
+/// of another size, where no image shows the board (then with what they seem to show), and for a live camera.
 BoardImages read_board_images(const std::string& source, const Board& board, const RunContext& context,
                               FilmViews kept = FilmViews::StillAndDistinct);
 

@@ -6,7 +6,6 @@
 #include <cctype>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace alidade {
 namespace {
@@ -44,10 +43,6 @@ void append_pose(std::vector<TableCell>& cells, const MotionState& state) {
   append(cells, Eigen::Vector4d(q.w(), q.x(), q.y(), q.z()));
 }
 
-std::vector<double> list_of(const Eigen::Ref<const Eigen::VectorXd>& values) {
-  return {values.begin(), values.end()};
-}
-
 std::vector<std::string> marker_names(std::span<const RigidBody> bodies) {
   std::vector<std::string> names;
   for (const RigidBody& body : bodies) {
@@ -82,25 +77,6 @@ std::string to_string(BodyStatus status) {
       return "tracked";
   }
   return "";
-}
-
-nlohmann::json pose_event(const std::string& body, const BodyEstimate& estimate, PoseDetail detail) {
-  nlohmann::json event{{"event", "pose"},
-                       {"t_ns", nanoseconds(estimate.time)},
-                       {"body", body},
-                       {"status", to_string(estimate.status)},
-                       {"determined", estimate.determined}};
-  if (estimate.status == BodyStatus::Lost) return event;
-  const MotionState& state = estimate.state;
-  const Eigen::Quaterniond q = attitude_of(state);
-  event["p_world_m"] = list_of(state.T_world_body.translation());
-  event["q_wxyz"] = {q.w(), q.x(), q.y(), q.z()};
-  if (detail == PoseDetail::Pose) return event;
-  event["v_world_m_s"] = list_of(state.v_world);
-  event["omega_body_rad_s"] = list_of(state.omega_body);
-  event["sigma"] = list_of(sigma_of(state));
-  if (!estimate.candidates.empty()) event["candidates"] = estimate.candidates.size();
-  return event;
 }
 
 MarkerFrames::MarkerFrames(const std::filesystem::path& path, std::span<const RigidBody> bodies)

@@ -8,8 +8,6 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "app/result_directory.h"
 #include "geometry/rigid_body.h"
 #include "io/table.h"
@@ -27,10 +25,6 @@ enum class PoseDetail {
 
 /// "lost", "ambiguous", "tracked".
 std::string to_string(BodyStatus status);
-
-/// An estimate as one JSON object, for a live feed: event ("pose"), t_ns, body, status, determined and, unless lost,
-/// p_world_m, q_wxyz and, where known, v_world_m_s, omega_body_rad_s, sigma (6: m, rad; body axes).
-nlohmann::json pose_event(const std::string& body, const BodyEstimate& estimate, PoseDetail detail);
 
 /// Markers of several bodies as frames of one TRC file, whichever body is told of first.
 class MarkerFrames {

@@ -63,6 +63,7 @@ CameraSource open_camera_source(const std::string& name, const std::filesystem::
 std::optional<ImageFrame> next_image(CameraSource& source) {
   std::optional<Frame> frame = source.first ? std::exchange(source.first, std::nullopt) : source.frames->next();
   if (!frame) return std::nullopt;
+  source.stamp = frame->stamp;
   return as_image_frame(std::move(*frame));
 }
 

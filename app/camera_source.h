@@ -20,6 +20,7 @@ struct CameraSource {
   Camera camera;
   std::optional<Dataset> dataset;
   std::optional<Frame> first;  ///< already taken from `frames`, to see the size of the images
+  CaptureStamp stamp{};        ///< of the frame that next_image gave last
 };
 
 /// Opens SOURCE (data set folder, video, folder or glob of images) with the camera of `camera_file`, or the data set's

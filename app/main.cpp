@@ -35,6 +35,7 @@ ExitCode run(int argc, char** argv) {
       .warn = [&display](const std::string& line) { display.warn(line); },
       .publish = [&display](const nlohmann::json& result) { display.publish(result); },
       .stream = [&display](const nlohmann::json& event) { display.stream(event); },
+      .prints_json = request->flags.json,
       .arguments = {argv, argv + argc},
   };
   const ExitCode code = request->command->run(context);

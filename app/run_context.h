@@ -24,6 +24,7 @@ struct RunContext {
   std::function<void(const std::string&)> warn;  ///< one line on stderr, "warning: " in front
   std::function<void(const nlohmann::json&)> publish;  ///< the result as one JSON line on stdout (only with --json)
   std::function<void(const nlohmann::json&)> stream;   ///< one JSON line on stdout at once, however the user is told
+  bool prints_json = false;                            ///< --json: standard output holds events alone
   std::vector<std::string> arguments;                  ///< argv, for the report
 };
 

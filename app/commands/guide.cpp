@@ -4,10 +4,12 @@
 #include <opencv2/imgproc.hpp>
 
 #include "app/board_images.h"
+#include "app/camera_options.h"
 #include "app/capture_record.h"
+#include "app/capture_warnings.h"
 #include "app/commands/verbs.h"
+#include "app/frame_sources.h"
 #include "calib/boards/board_detection.h"
-#include "capture/file_sources.h"
 #include "io/image_files.h"
 
 namespace alidade {
@@ -16,7 +18,10 @@ namespace {
 class GuideCommand : public Command {
  public:
   explicit GuideCommand(CLI::App& flags) {
-    flags.add_option("SOURCE", source_, "frames in which somebody shows a board: a video, a folder, a glob in quotes")
+    flags
+        .add_option(
+            "SOURCE", source_,
+            "where somebody shows a board: v4l2:/dev/video0, genicam:ADDRESS, a video, a folder, a glob in quotes")
         ->required();
     flags.add_option("--board", board_, "e.g. chessboard:9x6:25mm (inner corners); left out: guessed");
     flags.add_option("--fps", fps_hz_, "frames per second of images that have no times")->check(CLI::PositiveNumber);
@@ -33,14 +38,16 @@ class GuideCommand : public Command {
     options_.add("still_share", guide_.still_share, "", "of the image's width: by no more a resting board moves");
     options_.add("distinct_share", guide_.distinct_share, "", "of the image's width: by so much views have to differ");
     options_.add("least_tilt_deg", guide_.coverage.least_tilt_deg, "deg", "that counts as tilted");
+    bind(options_, flags, camera_);
     options_.add_check([this] { validate(guide_); });
   }
 
   ExitCode run(const RunContext& context) override {
     CaptureRecord record;
-    record.board = choose_board(board_, source_).board;
+    const auto frames = open_frames(source_, camera_, warn_of_news(context), fps_hz_);
+    record.board =
+        (is_camera_name(source_) ? choose_board(board_, source_, *frames) : choose_board(board_, source_)).board;
     record.enough_px = guide_.enough_px;
-    const auto frames = open_files(source_, fps_hz_);
     record.source = frames->describe();
     ResultDirectory directory(context.output, "guide");
     lead(context, *frames, directory, record);
@@ -68,9 +75,8 @@ class GuideCommand : public Command {
     if (!frames.has_times()) options.still_s = 0;
     std::optional<CaptureGuide> guide;
     while (!record.last.is_enough) {
-      if ((record.interrupted = context.stop.stop_requested())) break;
-      const auto frame = frames.next();
-      if (!frame) break;
+      const auto frame = frames.next(context.stop);
+      if ((record.interrupted = context.stop.stop_requested()) || !frame) break;
       if (!guide) {
         record.image = {frame->image.cols, frame->image.rows};
         guide.emplace(record.board, record.image, options);
@@ -123,6 +129,7 @@ class GuideCommand : public Command {
   std::optional<double> fps_hz_;
   bool stream_ = false;
   CaptureGuideOptions guide_;
+  CameraOptions camera_;
 };
 
 }  // namespace

@@ -8,6 +8,8 @@
 #include "app/body_pipeline.h"
 #include "app/body_report.h"
 #include "app/commands/verbs.h"
+#include "app/live_messages.h"
+#include "app/live_output.h"
 #include "app/reading_source.h"
 #include "datasets/detectors.h"
 #include "io/body_file.h"
@@ -30,18 +32,22 @@ class TrackBodyCommand : public Command {
         ->required();
     flags.add_option("--start", start_s_, "s, by the observations' clock: pass over what is before");
     flags.add_option("--end", end_s_, "s, by the observations' clock: stop there");
-    flags.add_flag("--stream", stream_, "poses as JSON lines on standard output, as soon as they are known");
+    flags.add_option("--stream", stream_, kStreamHelp);
     bind(options_, track_);
   }
 
   ExitCode run(const RunContext& context) override {
     const std::vector<RigidBody> bodies = read_bodies(bodies_);
     const DetectorRig rig = read_detectors(detectors_);
+    std::optional<LiveOutput> live;  // before standard input has said anything
+    if (!stream_.empty()) live.emplace(context, stream_, hello_message(hello(bodies)));
     const auto source = open_readings(observations_, rig.detectors, bodies, context.stop);
     ResultDirectory directory(context.output, "track body");
     BodyRecord record(directory, rig.detectors, bodies, detail_of(track_));
     const auto begin = std::chrono::steady_clock::now();
-    const std::optional<InputError> fault = follow(context, *source, rig.detectors, bodies, directory, record);
+    const BodyPipeline::LiveSink sink = live ? sink_of(*live) : BodyPipeline::LiveSink();
+    BodyPipeline pipeline(rig.detectors, bodies, track_, record, sink);
+    const std::optional<InputError> fault = follow(context, *source, rig.detectors, directory, pipeline);
     if (fault && !record.run().has_answer()) throw *fault;
 
     BodyRun run = record.commit();
@@ -50,6 +56,7 @@ class TrackBodyCommand : public Command {
     run.signals = source->signals();
     run.method = describe(track_);
     run.interrupted = context.stop.stop_requested();
+    if (live) live->end(end_message(live_end(run)));
     if (fault) run.fault = fault->what();
     write_bodies(directory.path("body.csv"), bodies);
     write_detector_rig(directory.path("detectors.yaml"), rig);
@@ -66,14 +73,8 @@ class TrackBodyCommand : public Command {
  private:
   // Until the observations end, the user stops it, or a line is wrong: what was wrong, then.
   std::optional<InputError> follow(const RunContext& context, ReadingSource& source,
-                                   const std::vector<LineDetector>& detectors, const std::vector<RigidBody>& bodies,
-                                   const ResultDirectory& directory, BodyRecord& record) const {
-    const PoseDetail detail = detail_of(track_);
-    BodyPipeline::LiveSink live;
-    if (stream_) {
-      live = [&](const std::string& body, const BodyEstimate& e) { context.stream(pose_event(body, e, detail)); };
-    }
-    BodyPipeline pipeline(detectors, bodies, track_, record, live);
+                                   const std::vector<LineDetector>& detectors, const ResultDirectory& directory,
+                                   BodyPipeline& pipeline) const {
     std::optional<ReadingWriter> found;  // in images; else they are in a table already
     if (source.finds_readings()) found.emplace(directory.path("readings.csv"), detectors, true);
     const auto show_progress = [&] { context.progress(progress_of(source, "tracking")); };
@@ -94,10 +95,26 @@ class TrackBodyCommand : public Command {
     return fault;
   }
 
-  // With --stream standard output is for poses alone.
+  LiveHello hello(const std::vector<RigidBody>& bodies) const {
+    LiveHello hello{"track body", name_of_source(observations_), "of the readings", "T_world_body"};
+    for (const RigidBody& body : bodies) hello.bodies.push_back(body.name);
+    return hello;
+  }
+
+  BodyPipeline::LiveSink sink_of(LiveOutput& live) const {
+    return [&live, source = name_of_source(observations_), detail = detail_of(track_)](
+               const std::string& body, const BodyEstimate& e) { live.send(pose_message(source, body, e, detail)); };
+  }
+
+  static LiveEnd live_end(const BodyRun& run) {
+    LiveEnd end{run.batches, 0, run.interrupted};
+    for (const BodyTally& tally : run.tallies) end.tracked += tally.tracked;
+    return end;
+  }
+
   void tell(const RunContext& context, const BodyRun& run, const nlohmann::json& summary) const {
     context.publish(summary);
-    if (stream_) return;
+    if (!leaves_standard_output(stream_)) return;
     for (const std::string& line : table_lines(run)) context.tell(line);
     context.tell(fmt::format("written to {}", context.output.string()));
   }
@@ -113,9 +130,8 @@ class TrackBodyCommand : public Command {
     return ExitCode::NoAnswer;
   }
 
-  std::string bodies_, detectors_, observations_;
+  std::string bodies_, detectors_, observations_, stream_;
   std::optional<double> start_s_, end_s_;
-  bool stream_ = false;
   BodyTrackOptions track_;
 };
 

@@ -7,6 +7,8 @@
 #include "app/camera_source.h"
 #include "app/commands/verbs.h"
 #include "app/frame_overlay.h"
+#include "app/live_messages.h"
+#include "app/live_output.h"
 #include "app/track_record.h"
 #include "app/tracker_options.h"
 #include "app/world_scale.h"
@@ -30,6 +32,7 @@ class TrackCameraCommand : public Command {
     flags.add_option("--init-poses", init_poses_, "trajectory with the poses of the first two frames");
     flags.add_option("--scale", scale_, "marker:SIDE_M[:ID] or distance:FRAME_A:FRAME_B:METRES");
     flags.add_option("--fps", fps_hz_, "frames per second of images that have no times")->check(CLI::PositiveNumber);
+    flags.add_option("--stream", stream_, kStreamHelp);
     options_.add_choice("refine", refine_,
                         {{"none", Refine::None}, {"local", Refine::Local}, {"global", Refine::Global}},
                         "bundle adjustment: none, of the last keyframes, or also of all in the end");
@@ -51,22 +54,25 @@ class TrackCameraCommand : public Command {
     if (!map_file_.empty()) known_map = read_map();
     CameraSource source = open_camera_source(source_, camera_file_, fps_hz_);
     CameraTracker tracker(source.camera, effective_options(source.camera), std::move(known_map), given);
+    std::optional<LiveOutput> live;
+    if (!stream_.empty()) live.emplace(context, stream_, hello_message(hello(source, tracker)));
     ResultDirectory directory(context.output, "track camera");
 
     TrackRecord record;
     record.camera = source.camera;
     record.source = source.frames->describe();
     record.has_times = source.frames->has_times();
-    follow(context, source, tracker, directory, record);
+    follow(context, source, tracker, directory, live ? &*live : nullptr, record);
+    if (live) live->end(end_message(live_end(tracker, record)));
     if (const auto fault = source.frames->fault()) record.warnings.push_back(*fault);
     finish(context, tracker, given, wish, record);
     for (const std::string& warning : record.warnings) context.warn(warning);
     write_track(record, directory, context.arguments, options_.to_yaml());
-    for (const std::string& line : table_lines(record)) context.tell(line);
+    for (const std::string& line : table_lines(record)) tell(context, line);
     const nlohmann::json summary = summary_of(record);
     directory.commit(summary);
     context.publish(summary);
-    context.tell(fmt::format("written to {}", context.output.string()));
+    tell(context, fmt::format("written to {}", context.output.string()));
     if (record.interrupted) return ExitCode::Interrupted;
     return answer(context, record);
   }
@@ -85,7 +91,7 @@ class TrackCameraCommand : public Command {
   }
 
   void follow(const RunContext& context, CameraSource& source, CameraTracker& tracker, const ResultDirectory& directory,
-              TrackRecord& record) {
+              LiveOutput* live, TrackRecord& record) {
     using Clock = std::chrono::steady_clock;
     const auto total = source.frames->frame_count();
     OverlayMovie movie(directory.path("overlay.mp4"), record.has_times ? fps_hz_.value_or(30.0) : 5.0, total);
@@ -100,6 +106,8 @@ class TrackCameraCommand : public Command {
       const auto frame = next_image(source);
       if (!frame) break;
       const FrameReport report = tracker.step(*frame);
+      tracked_at_once_ += report.state == FrameState::Tracked;
+      if (live) live->send(pose_message(source_, report, source.stamp));
       record.tracking_s += std::chrono::duration<double>(Clock::now() - begin).count();
       if (look_for_markers && report.is_keyframe) markers_.push_back({report.index, detect_markers(frame->grey)});
       if (overlay_) movie.add(*frame, report);
@@ -153,6 +161,20 @@ class TrackCameraCommand : public Command {
     record.scale = words;
   }
 
+  LiveHello hello(const CameraSource& source, const CameraTracker& tracker) const {
+    return {"track camera", source_, source.frames->has_times() ? "of the recording" : "none: 1 s per frame",
+            "T_world_camera", tracker.localises_only() || !init_poses_.empty()};
+  }
+
+  LiveEnd live_end(const CameraTracker& tracker, const TrackRecord& record) const {
+    return {static_cast<std::int64_t>(tracker.reports().size()), tracked_at_once_, record.interrupted};
+  }
+
+  // Standard output may be for poses alone.
+  void tell(const RunContext& context, const std::string& line) const {
+    if (leaves_standard_output(stream_)) context.tell(line);
+  }
+
   ExitCode answer(const RunContext& context, const TrackRecord& record) const {
     if (count(record.reports, FrameState::Tracked) > 0) return ExitCode::Success;
     std::string reason = "no image";
@@ -163,12 +185,13 @@ class TrackCameraCommand : public Command {
     return ExitCode::NoAnswer;
   }
 
-  std::string source_, map_file_, init_poses_, scale_;
+  std::string source_, map_file_, init_poses_, scale_, stream_;
   std::filesystem::path camera_file_;
   std::optional<double> fps_hz_;
   Refine refine_ = Refine::Global;
   int lag_ = -1;
   bool overlay_ = true;
+  std::int64_t tracked_at_once_ = 0;
   CameraTrackerOptions tracker_;
   std::vector<FrameMarkers> markers_;
 };

@@ -4,7 +4,9 @@
 namespace alidade {
 
 std::vector<Verb> all_verbs() {
-  return {track_camera_verb(),
+  return {devices_verb(),
+          record_verb(),
+          track_camera_verb(),
           track_body_verb(),
           calibrate_board_verb(),
           guide_verb(),

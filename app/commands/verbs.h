@@ -11,6 +11,8 @@ namespace alidade {
 /// here and listed in verbs.cpp.
 std::vector<Verb> all_verbs();
 
+Verb devices_verb();
+Verb record_verb();
 Verb track_camera_verb();
 Verb track_body_verb();
 Verb calibrate_board_verb();

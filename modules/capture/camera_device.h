@@ -57,6 +57,9 @@ struct CameraFacts {
   StampedMoment stamped = StampedMoment::Unknown;
 };
 
+/// From a frame's device_time to the middle of its exposure, as far as that is known: 0 where it is not.
+std::chrono::nanoseconds stamp_to_middle(const CameraFacts& facts);
+
 /// Why a camera cannot be used, for those who decide whether to try again.
 enum class CameraTrouble {
   Gone,     ///< unplugged, switched off, no answer

@@ -182,15 +182,15 @@ class LiveCamera : public FrameSource {
     if (stamp.device_time && facts.is_host_clock) {
       time = *stamp.device_time;
     } else if (stamp.device_time) {
-      if (clock_.observe(*stamp.device_time, *stamp.host_time)) {
+      // What was stamped as its exposure began is sent once that is over.
+      const bool is_early = facts.stamped == StampedMoment::ExposureStart;
+      const nanoseconds before_sent = is_early ? facts.exposure.value_or(nanoseconds(0)) : nanoseconds(0);
+      if (clock_.observe(*stamp.device_time, *stamp.host_time - before_sent)) {
         tell(CaptureEventKind::Restarted, "its clock was set anew");
       }
       time = Timestamp(clock_.to_host(*stamp.device_time)->time_since_epoch());
     }
-    if (!facts.exposure || !stamp.device_time) return time;
-    if (facts.stamped == StampedMoment::ExposureStart) return time + *facts.exposure / 2;
-    if (facts.stamped == StampedMoment::ReadoutEnd) return time - *facts.exposure / 2;
-    return time;
+    return stamp.device_time ? time + stamp_to_middle(facts) : time;
   }
 
   const std::string name_;

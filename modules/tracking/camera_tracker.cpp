@@ -57,6 +57,15 @@ FrameReport CameraTracker::step(const ImageFrame& frame) {
   return report;
 }
 
+std::optional<TrackAnchor> CameraTracker::anchor() const {
+  if (!has_pose_ || missed_ > 0) return std::nullopt;
+  TrackAnchor anchor{previous_time_, previous_, motion_, {}, tracks_, sigma_px_};
+  for (const FoundPoint& track : tracks_) {
+    anchor.points.push_back(live_.map.points[static_cast<std::size_t>(track.point)]);
+  }
+  return anchor;
+}
+
 FrameReport CameraTracker::wait(const ImageFrame& frame, const FlowImage& flow) {
   FrameReport report;
   report.index = frame.index;

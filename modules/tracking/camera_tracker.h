@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tracking/anchor_follower.h"
 #include "tracking/camera_tracker_options.h"
 #include "tracking/frame.h"
 #include "tracking/live_map.h"
@@ -29,6 +30,10 @@ class CameraTracker {
   FrameReport step(const ImageFrame& frame);
 
   const std::vector<FrameReport>& reports() const { return reports_; }
+  /// What is known of the last image, for one that follows the camera from it while this tracker takes its time over
+  /// the next; empty while the camera is not measured.
+  std::optional<TrackAnchor> anchor() const;
+
   const LiveMap& live_map() const { return live_; }
   const Camera& camera() const { return camera_; }
   const CameraTrackerOptions& options() const { return options_; }

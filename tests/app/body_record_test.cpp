@@ -170,7 +170,6 @@ TEST(BodyRecord, LeavesBlankWhatTheMethodDoesNotTell) {
   EXPECT_EQ(lines_of(folder / "out/covariance.csv").size(), 2u);  // head alone
   EXPECT_FALSE(summary_of(run)["bodies"][0].contains("mean_sigma_position_m"));
   EXPECT_EQ(plots_of(run, 0).size(), 3u);
-  EXPECT_FALSE(pose_event("probe", tracked_at(0), PoseDetail::Pose).contains("sigma"));
 }
 
 TEST(BodyRecord, RefusesABatchThatWasNotObserved) {
@@ -189,19 +188,6 @@ TEST(BodyRecord, KeepsFewSamplesOfALongRecording) {
   BodyRecord record(directory, two_detectors(), {kProbe});
   for (int i = 0; i < 9000; ++i) put(record, 0, lost_at(i));
   EXPECT_LE(record.run().tallies[0].samples.values().size(), BodyTally::kMostSamples);
-}
-
-TEST(PoseEvent, TellsAPoseOrThatThereIsNone) {
-  const nlohmann::json event = pose_event("probe", tracked_at(1), PoseDetail::Motion);
-  EXPECT_EQ(event["t_ns"], 4'000'000);
-  EXPECT_EQ(event["status"], "tracked");
-  EXPECT_EQ(event["p_world_m"], (nlohmann::json{0.001, 0.25, 2.0}));
-  EXPECT_EQ(event["q_wxyz"].size(), 4u);
-  EXPECT_EQ(event["sigma"].size(), 6u);
-  EXPECT_FALSE(event.contains("candidates"));
-  EXPECT_EQ(pose_event("probe", ambiguous_at(1), PoseDetail::Motion)["candidates"], 2);
-  EXPECT_EQ(pose_event("probe", lost_at(1), PoseDetail::Motion).dump(),
-            R"({"body":"probe","determined":0,"event":"pose","status":"lost","t_ns":4000000})");
 }
 
 BodyRun run_with_a_gap() {

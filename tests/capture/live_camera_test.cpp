@@ -226,6 +226,17 @@ TEST_F(LiveCameraTest, PutsTheTimesOfACameraWithItsOwnClockOnTheHosts) {
   EXPECT_EQ(taken->time.time_since_epoch(), taken->stamp.host_time->time_since_epoch());
 }
 
+// It was seen when the exposure was over, so the middle is half an exposure earlier.
+TEST_F(LiveCameraTest, KnowsThatAFrameIsSentAfterItsExposure) {
+  facts_.exposure = milliseconds(10);
+  facts_.stamped = StampedMoment::ExposureStart;
+  Act act = frame(0);
+  act.device_time = Timestamp(milliseconds(5));
+  const auto camera = open({{act}});
+  const auto taken = camera->next();
+  EXPECT_EQ(taken->time.time_since_epoch(), taken->stamp.host_time->time_since_epoch() - milliseconds(5));
+}
+
 TEST(LiveCameraOptions, NameWhatIsOutOfBounds) {
   EXPECT_NO_THROW(validate(LiveCameraOptions{}));
   EXPECT_THROW(validate(LiveCameraOptions{.stall_periods = 1}), std::invalid_argument);

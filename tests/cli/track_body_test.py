@@ -82,10 +82,10 @@ class TrackBody(ProgramTest):
         self.assertEqual(len(self.poses("both")), 200)
 
     def test_streams_poses_as_json_lines(self):
-        done = self.assert_succeeds(*self.words, "--stream", "--start", 0.2, "--end", 0.3, "--quiet", "-o", "out")
-        events = [json.loads(line) for line in done.stdout.splitlines()]
+        done = self.assert_succeeds(*self.words, "--stream", "-", "--start", 0.2, "--end", 0.3, "--quiet", "-o", "out")
+        events = [json.loads(line) for line in done.stdout.splitlines()][1:-1]
         self.assertEqual([event["t_ns"] for event in events], list(range(200_000_000, 300_000_001, 4_000_000)))
-        self.assertEqual({event["status"] for event in events}, {"tracked"})
+        self.assertEqual({event["state"] for event in events}, {"tracked"})
         self.assertEqual(len(self.poses("out")), len(events))
 
     def test_refuses_bad_input_word_for_word(self):
@@ -142,16 +142,16 @@ class TrackBody(ProgramTest):
 
     def interrupted_feed(self, signal_number):
         """A live feed that goes on; the signal comes while it is silent."""
-        with subprocess.Popen([PROGRAM, *self.inputs, "-", "-o", "out", "--stream"], cwd=self.directory, text=True,
+        with subprocess.Popen([PROGRAM, *self.inputs, "-", "-o", "out", "--stream", "-"], cwd=self.directory, text=True,
                               stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:
             rows = self.lines("sim/observations.csv")[:1 + 100 * 48]
             process.stdin.write("\n".join(rows) + "\n")
             process.stdin.flush()
-            seen = [process.stdout.readline() for _ in range(99)]  # the last batch waits for its end
+            seen = [process.stdout.readline() for _ in range(1 + 99)]  # hello; the last batch waits for its end
             process.send_signal(signal_number)
             rest = process.stdout.read().splitlines()
             self.assertEqual(process.wait(60), 130)
-        self.assertEqual(len(seen) + len(rest), 100)
+        self.assertEqual(len(seen) + len(rest), 1 + 100 + 1)
         self.assertTrue(self.summary("out")["interrupted"])
         self.assertEqual(len(self.poses("out")), 100)
         self.assertFalse((self.directory / "out" / ".part").exists())

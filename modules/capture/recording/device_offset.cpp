@@ -3,11 +3,11 @@
 
 namespace alidade {
 
-void DeviceOffset::observe(const CaptureStamp& stamp) {
+void DeviceOffset::observe(Timestamp time, const CaptureStamp& stamp, const CameraFacts& camera) {
   constexpr int kStart = 64;  // frames
-  if (!stamp.device_time || !stamp.host_time) return;
-  clock_.observe(*stamp.device_time, *stamp.host_time);
-  if (seen_++ < kStart) at_start_ = clock_.offset();
+  if (!stamp.device_time) return;
+  at_end_ = time - stamp_to_middle(camera) - *stamp.device_time;
+  if (seen_++ < kStart) at_start_ = at_end_;
 }
 
 }  // namespace alidade

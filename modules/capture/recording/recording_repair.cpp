@@ -179,7 +179,7 @@ class Repair {
     session_.totals = {};
     for (const KeptRow& kept : rows_) {
       session_.totals.add(kept.row);
-      offset.observe(kept.row.stamp);
+      offset.observe(kept.row.time, kept.row.stamp, session_.camera);
     }
     session_.offset_at_start = offset.at_start();
     session_.offset_at_end = offset.at_end();

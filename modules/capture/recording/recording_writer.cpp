@@ -172,7 +172,7 @@ void RecordingWriter::State::write(const Frame& frame) {
     throw;
   }
   session.totals.add(row);
-  offset.observe(frame.stamp);
+  offset.observe(frame.time, frame.stamp, session.camera);
   write_back();
 }
 

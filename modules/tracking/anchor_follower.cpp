@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracking/anchor_follower.h"
+
+#include <utility>
+
+#include "tracking/localiser.h"
+
+namespace alidade {
+namespace {
+
+// Every n-th keeps the spread over the image.
+TrackAnchor thinned(TrackAnchor anchor, int most) {
+  const std::size_t count = anchor.tracks.size();
+  if (count <= static_cast<std::size_t>(most)) return anchor;
+  TrackAnchor thin = anchor;
+  thin.points.clear();
+  thin.tracks.clear();
+  const double stride = static_cast<double>(count) / most;
+  for (int i = 0; i < most; ++i) {
+    const auto k = static_cast<std::size_t>(i * stride);
+    thin.points.push_back(anchor.points[k]);
+    thin.tracks.push_back(anchor.tracks[k]);
+  }
+  return thin;
+}
+
+}  // namespace
+
+AnchorFollower::AnchorFollower(Camera camera, CameraTrackerOptions options)
+    : camera_(camera), options_((validate(options), std::move(options))) {}
+
+void AnchorFollower::put(TrackAnchor anchor) {
+  newer_ = thinned(std::move(anchor), options_.most_tracks);
+}
+
+FrameReport AnchorFollower::step(const ImageFrame& frame, const std::string& reason) {
+  FrameReport report;
+  report.index = frame.index;
+  report.time = frame.time;
+  report.name = frame.name;
+  report.reason = reason;
+  if (!newer_ && !last_) return report;
+  const FlowImage flow = make_flow_image(frame.grey, options_.flow);
+  for (std::optional<TrackAnchor>* from : {&newer_, &last_}) {
+    if (!*from) continue;
+    const MotionState predicted = (*from)->motion.predicted(frame.time);
+    const auto attempt = follow(**from, predicted, flow);
+    if (!attempt) continue;
+    if (from == &newer_) last_ = std::move(*newer_);
+    newer_.reset();
+    return accept(std::move(report), predicted, *attempt, flow);
+  }
+  if (newer_ && (!last_ || missed_ > 0)) last_ = std::move(newer_);
+  newer_.reset();
+  return pass(std::move(report));
+}
+
+// The localiser wants a map: that of the anchor's points alone.
+std::optional<AnchorFollower::Attempt> AnchorFollower::follow(const TrackAnchor& from, const MotionState& predicted,
+                                                              const FlowImage& flow) const {
+  const PointMap map{from.points, {}};
+  std::vector<FoundPoint> tracks = from.tracks;
+  for (std::size_t i = 0; i < tracks.size(); ++i) tracks[i].point = static_cast<int>(i);
+  const std::vector<int> nothing_to_search;
+  const Localiser localiser(camera_, map, nothing_to_search, options_, from.sigma_px, false);
+  Localisation found = localiser.follow({from.image, from.motion.state().T_world_body, tracks}, predicted, flow);
+  if (!localiser.is_believable(found)) return std::nullopt;
+  return Attempt{std::move(found.found), std::move(*found.update)};
+}
+
+FrameReport AnchorFollower::accept(FrameReport report, const MotionState& predicted, const Attempt& attempt,
+                                   const FlowImage& flow) {
+  TrackAnchor& now = *last_;
+  const PoseUpdate& update = attempt.update;
+  now.motion.follow(report.time, update);
+  report.state = FrameState::Tracked;
+  report.reason.clear();
+  const MotionState& state = options_.pose == PoseMethod::Ekf ? now.motion.estimate() : now.motion.state();
+  report.T_world_camera = state.T_world_body;
+  report.covariance = state.covariance.topLeftCorner<6, 6>();
+  report.likelihood = update.sightings;
+  report.chi2_per_dof = update.chi2_per_dof;
+  report.sigma_px = now.sigma_px;
+
+  const PoseBelief belief{predicted.T_world_body, predicted.covariance.topLeftCorner<6, 6>()};
+  std::vector<MapPoint> points;
+  std::vector<FoundPoint> tracks;
+  for (std::size_t i = 0; i < attempt.found.size(); ++i) {
+    const auto k = static_cast<std::size_t>(attempt.found[i].point);
+    const FoundPoint track{now.tracks[k].point, -1, attempt.found[i].pixel};
+    report.sightings.push_back({track.point, track.pixel, update.is_inlier[i]});
+    const auto expected = expect(camera_, belief, now.points[k], now.sigma_px);
+    report.expectations.push_back(expected ? FrameExpectation{expected->pixel, expected->S}
+                                           : FrameExpectation{track.pixel, {}});
+    if (!update.is_inlier[i]) continue;
+    points.push_back(now.points[k]);
+    tracks.push_back(track);
+  }
+  now.time = report.time;
+  now.image = flow;
+  now.points = std::move(points);
+  now.tracks = std::move(tracks);
+  missed_ = 0;
+  return report;
+}
+
+// The last image stays what flow starts from; soon an anchor takes its place.
+FrameReport AnchorFollower::pass(FrameReport report) {
+  ++missed_;
+  report.reason = "too few map points followed (blur, darkness, or a part of the scene that the map lacks)";
+  const MotionState predicted = last_->motion.predicted(report.time);
+  report.state = missed_ <= options_.most_predicted ? FrameState::Predicted : FrameState::Lost;
+  if (report.state == FrameState::Lost) return report;
+  report.T_world_camera = predicted.T_world_body;
+  report.covariance = predicted.covariance.topLeftCorner<6, 6>();
+  return report;
+}
+
+}  // namespace alidade
