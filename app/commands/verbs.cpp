@@ -15,6 +15,8 @@ std::vector<Verb> all_verbs() {
           calibrate_rig_verb(),
           calibrate_detectors_verb(),
           map_verb(),
+          repair_verb(),
+          verify_verb(),
           undistort_verb(),
           convert_verb(),
           simulate_camera_verb(),

@@ -22,6 +22,8 @@ Verb calibrate_stereo_verb();
 Verb calibrate_rig_verb();
 Verb calibrate_detectors_verb();
 Verb map_verb();
+Verb repair_verb();
+Verb verify_verb();
 Verb undistort_verb();
 Verb convert_verb();
 Verb simulate_camera_verb();

@@ -7,6 +7,7 @@ extern "C" {
 
 #include <algorithm>
 #include <new>
+#include <thread>
 
 #include "io/libav_handles.h"
 #include "io/lossless_planes.h"
@@ -14,7 +15,10 @@ extern "C" {
 namespace alidade {
 namespace {
 
-constexpr int kThreads = 2;
+// As many as there are slices, or processors. The bytes do not depend on it.
+int thread_count() {
+  return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 4);
+}
 constexpr std::size_t kBitmapHeader = 40;  // bytes, before what ffvhuff must know
 
 }  // namespace
@@ -37,7 +41,7 @@ void LosslessDecoder::State::open(std::string_view codec_private) {
   decoder->width = format.size.width;
   decoder->height = format.size.height;
   decoder->thread_type = FF_THREAD_SLICE;
-  decoder->thread_count = kThreads;
+  decoder->thread_count = thread_count();
   decoder->err_recognition = AV_EF_CRCCHECK | AV_EF_EXPLODE;
   if (format.codec == LosslessCodec::FfvHuff && codec_private.size() >= kBitmapHeader) {
     decoder->codec_tag = MKTAG('F', 'F', 'V', 'H');

@@ -6,8 +6,10 @@ extern "C" {
 #include <libavutil/opt.h>
 }
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
 #include "core/errors.h"
 #include "io/ebml.h"
@@ -18,7 +20,10 @@ extern "C" {
 namespace alidade {
 namespace {
 
-constexpr int kThreads = 2;
+// As many as there are slices, or processors. The bytes do not depend on it.
+int thread_count() {
+  return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 4);
+}
 
 void check(int result) {
   if (result < 0) throw DeviceError("video", "cannot be encoded", libav_message(result), "");
@@ -72,7 +77,7 @@ void LosslessEncoder::State::open() {
   encoder->time_base = {1, 1'000'000};
   encoder->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
   encoder->thread_type = FF_THREAD_SLICE;  // frame threads would keep frames back
-  encoder->thread_count = format.codec == LosslessCodec::Ffv1 ? kThreads : 1;
+  encoder->thread_count = format.codec == LosslessCodec::Ffv1 ? thread_count() : 1;
   if (format.codec == LosslessCodec::Ffv1) {
     encoder->level = 3;
     encoder->gop_size = 1;

@@ -11,7 +11,7 @@ namespace alidade {
 /// How a video is written.
 enum class VideoKind {
   Movie,     ///< MP4: H.264 where libx264 is there, else MPEG-4; small, plays everywhere, not exact
-  Lossless,  ///< MKV: FFV1, every pixel as it was; readable up to the last cluster even when never closed
+  Lossless,  ///< MKV: FFV1, every pixel as it was; readable to the last frame even when never closed
 };
 
 /// Options of a video to write.

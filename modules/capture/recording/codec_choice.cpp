@@ -10,35 +10,40 @@
 namespace alidade {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using Seconds = std::chrono::duration<double>;
 
-// Noise in the lower quarter of the bits: more than any camera's.
-cv::Mat noise_like(const cv::Mat& image) {
-  cv::Mat noise(image.size(), image.type());
-  cv::RNG(1).fill(noise, cv::RNG::UNIFORM, 0, image.depth() == CV_16U ? 1024 : 64);
-  return noise;
+// The upper rows of an image, as many as make about 200,000 pixels, and an even number.
+cv::Size sample_of(cv::Size size) {
+  constexpr int kPixels = 200'000;
+  return {size.width, std::min(size.height, std::max(kPixels / size.width, 16) / 2 * 2)};
 }
 
-Clock::duration packing_time(const cv::Mat& image, const LosslessFormat& format) {
+// Five bits of noise in eight; as much of twelve, since their upper bits change less often.
+cv::Mat noise(PixelLayout layout, cv::Size size) {
+  cv::Mat image(mat_size(layout, size), mat_type(layout));
+  cv::RNG(1).fill(image, cv::RNG::UNIFORM, 0, image.depth() == CV_16U ? 512 : 32);
+  return image;
+}
+
+// For an image of `size`.
+Seconds packing_time(const LosslessFormat& format, cv::Size size) {
   LosslessEncoder encoder(format);
-  const cv::Mat noise = noise_like(image);
+  const cv::Mat image = noise(format.layout, format.size);
   encoder.encode(image);  // the first one sets up
-  const auto start = Clock::now();
+  const auto start = std::chrono::steady_clock::now();
   encoder.encode(image);
-  const auto middle = Clock::now();
-  encoder.encode(noise);
-  return std::max(middle - start, Clock::now() - middle);
+  return (std::chrono::steady_clock::now() - start) * (static_cast<double>(size.height) / format.size.height);
 }
 
 }  // namespace
 
-LosslessCodec choose_codec(const cv::Mat& image, PixelLayout layout, cv::Size size, std::chrono::nanoseconds period,
+LosslessCodec choose_codec(PixelLayout layout, cv::Size size, std::chrono::nanoseconds period,
                            const RecorderOptions& options) {
   if (layout == PixelLayout::Jpeg) return LosslessCodec::Raw;
   if (options.codec) return *options.codec;
-  const std::chrono::duration<double> allowed = options.busy_share * std::chrono::duration<double>(period);
+  const Seconds allowed = options.busy_share * Seconds(period);
   for (const auto codec : {LosslessCodec::Ffv1, LosslessCodec::FfvHuff}) {
-    if (packing_time(image, {layout, size, codec}) < allowed) return codec;
+    if (packing_time({layout, sample_of(size), codec}, size) < allowed) return codec;
   }
   return LosslessCodec::Raw;
 }

@@ -45,7 +45,7 @@ RecordedVideo::RecordedVideo(const std::filesystem::path& folder, const Recordin
   if (!file_) throw InputError(path_, 0, "cannot be read", "it belongs to every recording that holds an image");
   size_ = static_cast<std::int64_t>(std::filesystem::file_size(path_));
   auto header = parse_matroska_header(bytes(0, std::min(size_, kLongestHeader)));
-  if (!header || !session.codec) {
+  if (!header) {
     throw InputError(path_, 0, "does not begin as a recording's video", "take it from a copy of the recording");
   }
   header_ = std::move(*header);

@@ -26,7 +26,6 @@ class Recording : public FrameSource {
  public:
   explicit Recording(const fs::path& folder)
       : folder_(folder), name_(name_of_folder(folder)), session_(read_session(folder)), rows_(folder) {
-    if (session_.codec) video_.emplace(folder, session_);
     count_ = count_rows();
   }
 
@@ -74,7 +73,7 @@ class Recording : public FrameSource {
   }
 
   bool read_image(const FrameRow& row, Frame& frame) {
-    if (!video_) return false;
+    if (!video_) video_.emplace(folder_, session_);
     const auto image = video_->read(*row.position, row.size);
     if (image) frame.image = *image;
     return image && pixels_crc32(*image) == row.pixels_crc32;

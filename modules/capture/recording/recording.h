@@ -17,7 +17,7 @@ bool is_recording(const std::filesystem::path& folder);
 /// A frame whose pixels are not those recorded (the disk has damaged them) is flagged as damaged, its image empty where
 /// nothing could be read. fault() tells of these, of lost frames, and of a recording that was not closed;
 /// frames that the camera damaged say so themselves.
-/// Throws InputError where it is no recording, or its video is missing.
+/// Throws InputError where it is no recording; next() where the video is missing or a row cannot be.
 std::unique_ptr<FrameSource> open_recording(const std::filesystem::path& folder);
 
 }  // namespace alidade

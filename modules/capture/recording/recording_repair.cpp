@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "capture/recording/recording_repair.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "capture/recording/device_offset.h"
@@ -38,8 +39,9 @@ class Repair {
     }
     for (const char* name : {kFramesName, kEventsName, kVideoName}) take_name_back(name);
     AppendFile rows(folder_ / kFramesName, AppendFile::Start::AtEnd);  // so that nobody else writes meanwhile
-    if (session_.codec) video_.emplace(folder_, session_);
+    if (fs::exists(part_name(folder_ / kVideoName))) open_video();
     read_rows();
+    check_video();
     give_up_lost_rows();
     close_video();
     close_rows(rows);
@@ -53,6 +55,20 @@ class Repair {
   void take_name_back(const char* name) const {
     const fs::path path = folder_ / name, part = part_name(path);
     if (fs::exists(path) && !fs::exists(part)) fs::rename(path, part);
+  }
+
+  // A power cut may leave a video that does not even begin as one.
+  void open_video() {
+    try {
+      video_.emplace(folder_, session_);
+    } catch (const InputError&) {  // nothing in it can be read; see check_video
+    }
+  }
+
+  // Rows are not given up because their video was put elsewhere, or its first bytes were damaged: this throws.
+  void check_video() {
+    const auto has_frame = [](const KeptRow& kept) { return kept.row.position.has_value(); };
+    if (!video_ && std::any_of(rows_.begin(), rows_.end(), has_frame)) video_.emplace(folder_, session_);
   }
 
   void read_rows() {
@@ -85,6 +101,15 @@ class Repair {
     rows_.resize(keep);
   }
 
+  void find_video_start() {
+    session_.video_start = Timestamp(session_.start.host.time_since_epoch());  // near it, for want of a row
+    for (const KeptRow& kept : rows_) {
+      if (!kept.packet) continue;
+      session_.video_start = kept.row.time - kept.packet->time;
+      return;
+    }
+  }
+
   // The frames that follow the last one with a row, as long as they can be read.
   std::vector<KeptRow> find_frames_without_row(std::int64_t begin) {
     std::vector<KeptRow> found;
@@ -108,9 +133,10 @@ class Repair {
   void close_video() {
     if (!video_) {
       std::error_code ignored;
-      fs::remove(part_name(folder_ / kVideoName), ignored);  // it holds no frame yet, or session.json would know more
+      fs::remove(part_name(folder_ / kVideoName), ignored);
       return;
     }
+    find_video_start();
     auto begin = static_cast<std::int64_t>(video_->header().bytes.size());
     for (const KeptRow& kept : rows_) begin = std::max(begin, kept.row.packet_end());
     const std::vector<KeptRow> found = find_frames_without_row(begin);

@@ -29,7 +29,7 @@ class Verification {
     if (!session_.is_closed) note(folder_ / kSessionName, 0, "the recording was not closed");
     guarded([this] { check_events(); });
     guarded([this] {
-      if (session_.codec) video_.emplace(folder_, session_);
+      if (fs::exists(find_recorded(folder_, kVideoName))) video_.emplace(folder_, session_);
     });
     guarded([this] { check_rows(); });
     if (session_.is_closed) check_totals();

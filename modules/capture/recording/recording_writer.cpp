@@ -78,8 +78,8 @@ struct RecordingWriter::State {
   fs::path folder;
   RecordingSession session;
   LineFile frames, events;
-  std::optional<LosslessEncoder> encoder;  // from the first image on
-  std::optional<MatroskaWriter> video;
+  LosslessEncoder encoder;
+  std::optional<MatroskaWriter> video;  // from the first image on, at which its time is 0
   DeviceOffset offset;
   HostTime last_writeback = HostClock::now();
   bool is_open = true;
@@ -88,9 +88,9 @@ struct RecordingWriter::State {
       : folder(std::move(where)),
         session(std::move(what)),
         frames(folder / kFramesName, frame_row_header()),
-        events(folder / kEventsName, event_row_header()) {}
+        events(folder / kEventsName, event_row_header()),
+        encoder(session.format()) {}
 
-  void start_video(const Frame& first);
   void write(const Frame& frame);
   void write_image(const Frame& frame, FrameRow& row);
   void check(const Frame& frame) const;
@@ -112,18 +112,6 @@ struct RecordingWriter::State {
     }
   }
 };
-
-void RecordingWriter::State::start_video(const Frame& first) {
-  const RecorderOptions& options = session.options;
-  const CameraFacts& camera = session.camera;
-  const PixelLayout layout = layout_of(camera.format);
-  const auto period = camera.period.value_or(from_seconds(1 / options.assumed_fps_hz));
-  session.codec = choose_codec(first.image, layout, camera.size, period, options);
-  session.video_start = first.time;
-  encoder.emplace(session.format());
-  video.emplace(folder / kVideoName, encoder->track(camera.period));
-  write_session(folder, session);
-}
 
 void RecordingWriter::State::check(const Frame& frame) const {
   const CameraFacts& camera = session.camera;
@@ -157,8 +145,11 @@ DiskFull RecordingWriter::State::disk_full(const std::string& limit) const {
 }
 
 void RecordingWriter::State::write_image(const Frame& frame, FrameRow& row) {
-  if (!video) start_video(frame);
-  const std::string_view packet = encoder->encode(frame.image);
+  if (!video) {
+    session.video_start = frame.time;
+    video.emplace(folder / kVideoName, encoder.track(session.camera.period));
+  }
+  const std::string_view packet = encoder.encode(frame.image);
   check_room(static_cast<std::int64_t>(packet.size()));
   const MatroskaPacket written = video->write(frame.time - *session.video_start, packet);
   row.position = written.position;
@@ -231,6 +222,8 @@ RecordingWriter::RecordingWriter(fs::path folder, RecordingSubject subject, cons
   session.camera = std::move(subject.camera);
   session.request = std::move(subject.request);
   session.options = options;
+  const auto period = session.camera.period.value_or(from_seconds(1 / options.assumed_fps_hz));
+  session.codec = choose_codec(layout_of(session.camera.format), session.camera.size, period, options);
   session.start = read_clocks();
   take_reserve(folder);
   state_ = std::make_unique<State>(std::move(folder), std::move(session));

@@ -80,9 +80,9 @@ json to_json(const RecordingSession& session) {
   json j{{"format", kRecordingFormat},          {"version", kVersion},
          {"program", session.program},          {"state", session.is_closed ? "closed" : "recording"},
          {"camera", to_json(session.camera)},   {"request", to_json(session.request)},
-         {"options", to_json(session.options)}, {"start", to_json(session.start)}};
+         {"options", to_json(session.options)}, {"codec", name_of(session.codec.value())},
+         {"start", to_json(session.start)}};
   if (session.is_repaired) j["repaired"] = true;
-  if (session.codec) j["codec"] = name_of(*session.codec);
   if (session.video_start) j["video_start_ns"] = session.video_start->time_since_epoch().count();
   if (session.end) j["end"] = to_json(*session.end);
   set(j, "device_to_host_at_start_ns", session.offset_at_start);
@@ -95,6 +95,11 @@ json to_json(const RecordingSession& session) {
   return j;
 }
 
+LosslessCodec codec_of(const std::string& name) {
+  if (const auto codec = parse_lossless_codec(name)) return *codec;
+  throw std::invalid_argument("there is no codec '" + name + "'");
+}
+
 RecordingSession session_of(const json& j) {
   RecordingSession session;
   session.program = j.at("program");
@@ -103,7 +108,7 @@ RecordingSession session_of(const json& j) {
   session.camera = camera_facts_of(j.at("camera"));
   session.request = camera_request_of(j.at("request"));
   session.options = options_of(j.at("options"));
-  if (j.contains("codec")) session.codec = parse_lossless_codec(j.at("codec").get<std::string>());
+  session.codec = codec_of(j.at("codec"));
   if (const auto start = get(j, "video_start_ns")) session.video_start = Timestamp(*start);
   session.start = clocks_of(j.at("start"));
   if (j.contains("end")) session.end = clocks_of(j.at("end"));

@@ -37,8 +37,8 @@ struct RecordingSession {
   CameraFacts camera;
   CameraRequest request;
   RecorderOptions options;
-  std::optional<LosslessCodec> codec;    ///< empty before the first image
-  std::optional<Timestamp> video_start;  ///< Frame::time of the first frame in the video: there its time is 0
+  std::optional<LosslessCodec> codec;    ///< chosen when the recording begins
+  std::optional<Timestamp> video_start;  ///< Frame::time of the first frame in the video, whose own time there is 0
   ClockReading start;
   std::optional<ClockReading> end;
   /// Host time minus device time (ClockOffset) at the start and the end; empty where the camera stamps nothing.
@@ -48,7 +48,7 @@ struct RecordingSession {
   std::vector<std::pair<std::string, std::uint64_t>> statistics;  ///< CameraDevice::statistics at the end
   std::vector<RecordedFile> files;                                ///< of a closed recording
 
-  LosslessFormat format() const;  ///< of the video; its codec must be known
+  LosslessFormat format() const;  ///< of the video
 };
 
 /// How the frames of a camera lie in a video.

@@ -149,6 +149,20 @@ TEST_F(InterruptedRecording, WithoutAFrameIsClosedToo) {
   record(0);
   cut("frames.csv.part", 5);  // in the header
   EXPECT_EQ(frames_after_repair(), 0);
+  record(0);
+  append("video.mkv.part", "not its header");
+  EXPECT_EQ(frames_after_repair(), 0);
+  EXPECT_FALSE(fs::exists(path_ / "video.mkv.part"));
+}
+
+TEST_F(InterruptedRecording, KeepsAFrameThoughNoRowWasWritten) {
+  record(1);
+  const std::string rows = read_bytes(path_ / "frames.csv.part");
+  cut("frames.csv.part", rows.size() - 1 - rows.find('\n'));
+  EXPECT_EQ(repair_recording(path_).recovered, 1);
+  const auto frame = open_recording(path_)->next();
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(cv::norm(frame->image, test::synthetic_frame(camera_, 0).image, cv::NORM_INF), 0);
 }
 
 TEST_F(InterruptedRecording, IsLeftAloneWhileItIsRecorded) {

@@ -294,6 +294,26 @@ TEST_F(RecordingFolder, ThatIsNoneIsNamed) {
   EXPECT_NE(message("foreign").find("is of version 99 of the format, known is 1"), std::string::npos);
 }
 
+TEST_F(RecordingFolder, TakesTheSmallestCodecThatKeepsUp) {
+  const auto codec_at = [this](std::chrono::nanoseconds period, const char* name) {
+    RecordingSubject camera = camera_;
+    camera.camera.period = period;
+    return RecordingWriter(folder_ / name, camera).session().codec;
+  };
+  EXPECT_EQ(codec_at(std::chrono::seconds(10), "slow"), LosslessCodec::Ffv1);
+  EXPECT_EQ(codec_at(std::chrono::nanoseconds(10), "fast"), LosslessCodec::Raw);
+}
+
+TEST_F(RecordingFolder, WhoseVideoIsMissingIsNamed) {
+  {
+    RecordingWriter writer(path_, camera_);
+    record(writer, camera_, 1);
+  }
+  fs::remove(path_ / "video.mkv.part");
+  EXPECT_EQ(test::message_of(folder_.path(), [&] { replay(); }),
+            "camera/video.mkv: cannot be read; it belongs to every recording that holds an image");
+}
+
 TEST(RecorderOptions, AreNamedWhereTheyCannotBe) {
   const auto message = [](const RecorderOptions& options) {
     try {

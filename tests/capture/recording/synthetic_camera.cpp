@@ -2,6 +2,7 @@
 #include "tests/capture/recording/synthetic_camera.h"
 
 #include <opencv2/core.hpp>
+#include <turbojpeg.h>
 
 namespace alidade::test {
 namespace {
@@ -18,10 +19,19 @@ cv::Mat ramp(const PixelFormat& format, cv::Size size, std::uint64_t seed) {
   return image;
 }
 
-cv::Mat jpeg_bytes(std::uint64_t seed) {
-  cv::Mat image(1, 500 + static_cast<int>(seed % 7) * 30, CV_8UC1);
-  cv::RNG(seed).fill(image, cv::RNG::UNIFORM, 0, 256);
-  return image;
+// The ramp as a camera would pack it: 8 bits, grey.
+cv::Mat jpeg_bytes(cv::Size size, std::uint64_t seed) {
+  const cv::Mat image = ramp({}, size, seed);
+  const tjhandle packer = tjInitCompress();
+  unsigned char* bytes = nullptr;
+  unsigned long length = 0;
+  constexpr int kQuality = 80;
+  const int failed = tjCompress2(packer, image.data, image.cols, static_cast<int>(image.step), image.rows, TJPF_GRAY,
+                                 &bytes, &length, TJSAMP_GRAY, kQuality, 0);
+  const cv::Mat packed = failed ? cv::Mat() : cv::Mat(1, static_cast<int>(length), CV_8UC1, bytes).clone();
+  tjFree(bytes);
+  tjDestroy(packer);
+  return packed;
 }
 
 }  // namespace
@@ -51,7 +61,8 @@ Frame synthetic_frame(const RecordingSubject& camera, int index) {
   Frame frame;
   frame.index = index;
   frame.time = Timestamp(std::chrono::seconds(1000) + kPeriod * index);
-  frame.image = format.kind == PixelKind::Jpeg ? jpeg_bytes(seed) : ramp(format, camera.camera.size, seed);
+  frame.image =
+      format.kind == PixelKind::Jpeg ? jpeg_bytes(camera.camera.size, seed) : ramp(format, camera.camera.size, seed);
   frame.format = format;
   frame.stamp.device_time = Timestamp(kPeriod * index);
   frame.stamp.host_time = HostTime(std::chrono::seconds(1000) + kPeriod * index + std::chrono::microseconds(index % 5));
