@@ -26,7 +26,7 @@ constexpr double kPacketRequestRatio = 2;
 
 // Buffers for what comes in 0.5 s, while frames wait for lost packets or we for the processor.
 constexpr double kBufferedSeconds = 0.5;
-constexpr std::size_t kLeastBuffers = 8, kMostBuffers = 400, kMostBufferBytes = 256u << 20;
+constexpr std::size_t kLeastBuffers = 8, kMostBuffers = 400, kMostBufferBytes = 512u << 20;
 
 constexpr int kSocketBytes = 32 << 20;
 

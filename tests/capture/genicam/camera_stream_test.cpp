@@ -29,8 +29,8 @@ TEST(CameraStream, HasBuffersForHalfASecondButNoMoreThanMemoryBears) {
   EXPECT_EQ(buffers(1000, 10ms), 50);
   EXPECT_EQ(buffers(1000, 100ms), 8);
   EXPECT_EQ(buffers(1000, {}), 50);
-  EXPECT_EQ(buffers(16 << 20, 1ms), 16);
-  EXPECT_EQ(buffers(40 << 20, 1ms), 8);
+  EXPECT_EQ(buffers(16 << 20, 1ms), 32);
+  EXPECT_EQ(buffers(100 << 20, 1ms), 8);
 }
 
 TEST(CameraStream, CountsNothingBeforeItRuns) {
