@@ -146,19 +146,24 @@ class LiveCamera : public FrameSource {
   Frame finish(Frame frame) {
     const HostTime now = HostClock::now();
     if (!frame.stamp.host_time) frame.stamp.host_time = now;
-    if (!is_streaming_) tell(CaptureEventKind::Streaming, "");
-    if (is_stalled_) tell(CaptureEventKind::Resumed, "");
+    // What is left of a frame that was cut off by a dying camera is no sign of life.
+    if (!frame.stamp.is_damaged || !is_stalled_) live_on(now);
     count_drops(frame.stamp);
     if (frame.stamp.is_damaged) tell(CaptureEventKind::FrameDamaged, "the device flags errors in it");
-    if (is_streaming_ && !is_stalled_) interval_ = (interval_ * 7 + (now - alive_)) / 8;
-    is_streaming_ = true;
-    is_stalled_ = false;
-    alive_ = last_frame_ = now;
     frame.time = std::max(moment(frame), last_time_ + nanoseconds(1));
     last_time_ = frame.time;
     frame.index = next_index_++;
     frame.name = fmt::format("{}#{}", name_, frame.index);
     return frame;
+  }
+
+  void live_on(HostTime now) {
+    if (!is_streaming_) tell(CaptureEventKind::Streaming, "");
+    if (is_stalled_) tell(CaptureEventKind::Resumed, "");
+    if (is_streaming_ && !is_stalled_) interval_ = (interval_ * 7 + (now - alive_)) / 8;
+    is_streaming_ = true;
+    is_stalled_ = false;
+    alive_ = last_frame_ = now;
   }
 
   void count_drops(CaptureStamp& stamp) {

@@ -169,6 +169,17 @@ TEST_F(LiveCameraTest, OpensAnewACameraThatStaysSilent) {
   EXPECT_EQ(kinds(), (std::vector{Kind::Opened, Kind::Streaming, Kind::Stalled, Kind::Opened, Kind::Streaming}));
 }
 
+TEST_F(LiveCameraTest, TakesTheRestOfACutOffFrameForNoSignOfLife) {
+  Act rest = frame(1);
+  rest.is_damaged = true;
+  const auto camera = open({{frame(0), silence(milliseconds(30)), rest, silence(std::chrono::hours(1))}, {frame(0)}});
+  camera->next();
+  EXPECT_TRUE(camera->next()->stamp.is_damaged);
+  EXPECT_FALSE(camera->next()->stamp.is_damaged);
+  EXPECT_EQ(kinds(), (std::vector{Kind::Opened, Kind::Streaming, Kind::Stalled, Kind::FrameDamaged, Kind::Opened,
+                                  Kind::Streaming}));
+}
+
 TEST_F(LiveCameraTest, TakesACameraThatNeverStartsForStalled) {
   const auto camera = open({{silence(std::chrono::hours(1))}, {frame(0)}});
   EXPECT_TRUE(camera->next());
