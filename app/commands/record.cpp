@@ -66,7 +66,8 @@ class RecordCommand : public Command {
     if (most_mb_ > 0) options.max_bytes = static_cast<std::int64_t>(most_mb_ * kMega);
     options.busy_share /= static_cast<double>(cameras.size());
     for (const auto& camera : cameras) {
-      camera->start(context.output / camera->camera().name, options, limits_, [this] {
+      const std::string& name = camera->camera().name;
+      camera->start(name.empty() ? context.output : context.output / name, options, limits_, [this] {
         const std::scoped_lock lock(mutex_);
         has_failed_ = true;
         changed_.notify_all();

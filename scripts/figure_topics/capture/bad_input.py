@@ -21,11 +21,12 @@ EXPECTED = {
     "no-such-device": (DEVICE, "video99: open: no such device; "),
     "no-permission": (DEVICE, "denied|permission"),
     "device-busy": (DEVICE, "another program|controls"),
-    "unsupported-size": (DEVICE, "5000x10"),
+    "unsupported-size": (DEVICE, "Width=5000: is out of range; it takes 1 to"),
     "not-a-camera": (DEVICE, "/dev/null: open: this is no camera; "),
     "unreachable-address": (DEVICE, r"127\.0\.0\.77: open: .*answers.*; check"),
+    "full-disk": (DEVICE, "disk full; [1-9][0-9]* frames are safe in "),
     "truncated-video": (BAD_INPUT, "cut.mp4"),
-    "damaged-recording": (BAD_INPUT, "video.mkv"),
+    "damaged-recording": (BAD_INPUT, "frames.csv:[0-9]+: its frame is not in the video"),
     "empty-directory": (BAD_INPUT, "empty.*no image"),
     "mixed-image-sizes": (BAD_INPUT, "0001.png.*320x240"),
 }
@@ -53,6 +54,24 @@ def forbidden_device(folder):
         node.unlink()
 
 
+@contextlib.contextmanager
+def small_disk(bench, folder):
+    folder.mkdir(parents=True)
+    bench.run("mount", "-t", "tmpfs", "-o", "size=20m", "tmpfs", folder)
+    try:
+        yield folder
+    finally:
+        bench.run("umount", folder)
+
+
+def record_to_the_last_byte(bench, folder):
+    """A recording that fills its disk, judged with what is left of it."""
+    with test_camera(ADDRESS), small_disk(bench, folder) as disk:
+        run = bench.alidade("record", f"genicam:{ADDRESS}", "-o", disk / "out", "--keep-free-mb", 0, code=None)
+        bench.alidade("verify", disk / "out", "--quiet")
+    return run
+
+
 def measure_cameras(bench):
     work = bench.fresh("capture/bad-input/cameras")
     work.mkdir(parents=True)
@@ -70,9 +89,11 @@ def measure_cameras(bench):
         with forbidden_device(work) as node:
             nobody = ["setpriv", "--reuid", "65534", "--clear-groups"]
             yield judge("no-permission", record(bench, "forbidden", f"v4l2:{node}", by=nobody))
+        yield judge("full-disk", record_to_the_last_byte(bench, work / "disk"))
 
 
-CAMERAS = ["no-such-device", "not-a-camera", "unreachable-address", "unsupported-size", "device-busy", "no-permission"]
+CAMERAS = ["no-such-device", "not-a-camera", "unreachable-address", "unsupported-size", "device-busy", "no-permission",
+           "full-disk"]  # fmt: skip
 
 
 def halve(path):
