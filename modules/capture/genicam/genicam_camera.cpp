@@ -13,6 +13,7 @@
 #include "capture/genicam/camera_stream.h"
 #include "capture/genicam/frame_of_buffer.h"
 #include "capture/genicam/gvcp.h"
+#include "capture/genicam/heartbeat.h"
 #include "capture/genicam/packet_size.h"
 #include "capture/genicam/software_trigger.h"
 
@@ -26,7 +27,11 @@ struct Connection {
   GObjectPointer<ArvStream> stream;
   std::optional<SoftwareTrigger> trigger;
 
-  ~Connection() { trigger.reset(); }
+  ~Connection() {
+    trigger.reset();
+    stream.reset();
+    if (opened.camera) await_heartbeat(opened.camera.get(), &is_lost);
+  }
 };
 
 void note_loss(ArvDevice*, void* is_lost) {

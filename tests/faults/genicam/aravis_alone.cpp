@@ -7,6 +7,8 @@
 
 #include <arv.h>
 
+#include "capture/genicam/heartbeat.h"
+
 namespace alidade::test {
 namespace {
 
@@ -39,8 +41,7 @@ double aravis_notice_ms(const FaultBench& bench) {
   std::atomic<bool> is_lost = false;  // set by Aravis' thread
   const std::unique_ptr<ArvCamera, Unref<ArvCamera>> camera(arv_camera_new(bench.address.c_str(), nullptr));
   if (!camera) return 0;
-  const gulong handler =
-      g_signal_connect(arv_camera_get_device(camera.get()), "control-lost", G_CALLBACK(note_loss), &is_lost);
+  g_signal_connect(arv_camera_get_device(camera.get()), "control-lost", G_CALLBACK(note_loss), &is_lost);
   double notice_ms = 0;
   {
     const std::unique_ptr<ArvStream, Unref<ArvStream>> stream(
@@ -56,7 +57,7 @@ double aravis_notice_ms(const FaultBench& bench) {
     const HostTime last = take_frames(stream.get(), before, [&](int) { return is_lost || HostClock::now() > end; });
     if (is_lost) notice_ms = std::chrono::duration<double, std::milli>(HostClock::now() - last).count();
   }
-  g_signal_handler_disconnect(arv_camera_get_device(camera.get()), handler);
+  await_heartbeat(camera.get(), &is_lost);
   return notice_ms;
 }
 
