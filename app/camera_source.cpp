@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
-#include "capture/file_sources.h"
+#include "app/frame_sources.h"
 #include "core/errors.h"
 #include "io/camera_file.h"
 
@@ -42,10 +42,12 @@ ImageFrame as_image_frame(Frame frame) {
 }  // namespace
 
 CameraSource open_camera_source(const std::string& name, const std::filesystem::path& camera_file,
-                                std::optional<double> fps_hz) {
+                                std::optional<double> fps_hz, const LiveRequest& live) {
   CameraSource source;
+  source.is_live = is_camera_name(name);
   if (std::filesystem::is_directory(name)) source.dataset = open_dataset(name);
-  source.frames = source.dataset && !fps_hz ? open_frames(*source.dataset) : open_files(name, fps_hz);
+  source.frames =
+      source.dataset && !fps_hz ? open_frames(*source.dataset) : open_frames(name, live.options, live.events, fps_hz);
   if (!camera_file.empty()) read_camera(camera_file, ImageSize{1 << 20, 1 << 20});  // its own faults come first
   source.first = source.frames->next();
   if (!source.first) throw InputError(name, 0, "holds no image that can be read", "give a folder, glob or video");
@@ -60,8 +62,8 @@ CameraSource open_camera_source(const std::string& name, const std::filesystem::
   return source;
 }
 
-std::optional<ImageFrame> next_image(CameraSource& source) {
-  std::optional<Frame> frame = source.first ? std::exchange(source.first, std::nullopt) : source.frames->next();
+std::optional<ImageFrame> next_image(CameraSource& source, std::stop_token stop) {
+  std::optional<Frame> frame = source.first ? std::exchange(source.first, std::nullopt) : source.frames->next(stop);
   if (!frame) return std::nullopt;
   source.stamp = frame->stamp;
   return as_image_frame(std::move(*frame));

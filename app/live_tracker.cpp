@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/live_tracker.h"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -17,12 +18,17 @@ void step_back() {
   ::setpriority(PRIO_PROCESS, thread, ::getpriority(PRIO_PROCESS, thread) + kSteps);
 }
 
+CameraTrackerOptions follower_options(CameraTrackerOptions options, int most_followed) {
+  options.most_tracks = std::min(options.most_tracks, most_followed);
+  return options;
+}
+
 }  // namespace
 
 LiveTracker::LiveTracker(CameraTracker& tracker, LiveTrackerOptions options)
     : tracker_(tracker),
       options_(options),
-      follower_(tracker.camera(), tracker.options()),
+      follower_(tracker.camera(), follower_options(tracker.options(), options.most_followed)),
       thread_([this](std::stop_token stop) { work(stop); }) {}
 
 LiveTracker::~LiveTracker() {

@@ -18,6 +18,7 @@ struct LiveTrackerOptions {
   /// At most this share of its time the map's half works: the rest is for the frames and for the camera.
   double map_share = 0.7;
   double least_pause_s = 0.02;  ///< between two frames of the map's half
+  int most_followed = 300;      ///< points per frame: half of what is followed offline, in 7 ms
 };
 
 /// Answers for every frame at once: flow carries the last anchor on, while in a thread of its own the tracker takes

@@ -137,6 +137,20 @@ void OptionFields::add(std::string name, bool& value, std::string unit, std::str
              .is_switch = true});
 }
 
+void OptionFields::add(std::string name, std::optional<bool>& value, std::string unit, std::string help) {
+  const auto parse = [&value](const std::string& text) {
+    value = text == "auto" ? std::nullopt : std::optional(parse_switch(text));
+  };
+  add_field({.name = std::move(name),
+             .unit = std::move(unit),
+             .help = std::move(help),
+             .parse = parse,
+             .print = [&value] { return !value   ? "auto"
+                                        : *value ? "true"
+                                                 : "false"; },
+             .is_switch = true});
+}
+
 void OptionFields::add(std::string name, std::string& value, std::string unit, std::string help) {
   add_field({.name = std::move(name),
              .unit = std::move(unit),

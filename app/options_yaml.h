@@ -4,6 +4,7 @@
 #include <deque>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -24,6 +25,8 @@ class OptionFields {
   void add(std::string name, int& value, std::string unit, std::string help);
   void add(std::string name, unsigned& value, std::string unit, std::string help);
   void add(std::string name, bool& value, std::string unit, std::string help);
+  /// A switch that stands at "auto" until somebody sets it.
+  void add(std::string name, std::optional<bool>& value, std::string unit, std::string help);
   void add(std::string name, std::string& value, std::string unit, std::string help);
 
   /// A value out of a closed set, by name: add_choice("refine", refine, {{"none", Refine::None}, ...}, "...").

@@ -2,6 +2,7 @@
 #include "app/track_record.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -28,11 +29,9 @@ std::string csv_text(std::string text) {
 std::string frames_csv(const std::vector<FrameReport>& reports) {
   std::string csv = "index,t_ns,image,state,keyframe,inliers,chi2_per_dof,sigma_px,reason\n";
   for (const FrameReport& r : reports) {
-    const auto inliers =
-        std::count_if(r.sightings.begin(), r.sightings.end(), [](const auto& s) { return s.is_inlier; });
     csv += fmt::format("{},{},{},{},{},{},{:.4f},{:.4f},{}\n", r.index, r.time.time_since_epoch().count(),
-                       csv_text(r.name), to_string(r.state), r.is_keyframe ? 1 : 0, inliers, r.chi2_per_dof, r.sigma_px,
-                       csv_text(r.reason));
+                       csv_text(r.name), to_string(r.state), r.is_keyframe ? 1 : 0, r.inlier_count, r.chi2_per_dof,
+                       r.sigma_px, csv_text(r.reason));
   }
   return csv;
 }
@@ -44,7 +43,7 @@ std::vector<Plot> plots_of(const TrackRecord& record) {
   Series z{"z", {}, {}, SeriesStyle::Line, {}};
   for (const FrameReport& r : record.reports) {
     inliers.x.push_back(r.index);
-    inliers.y.push_back(static_cast<double>(r.sightings.size()));
+    inliers.y.push_back(static_cast<double>(r.inlier_count));
     if (!r.has_pose()) continue;
     const Eigen::Vector3d centre = r.T_world_camera.translation();
     for (auto [series, value] : {std::pair{&x, centre.x()}, std::pair{&y, centre.y()}, std::pair{&z, centre.z()}}) {
@@ -104,6 +103,14 @@ int count(const std::vector<FrameReport>& reports, FrameState state) {
       std::count_if(reports.begin(), reports.end(), [state](const FrameReport& r) { return r.state == state; }));
 }
 
+double latency_quantile(const LiveTally& tally, double share) {
+  std::vector<float> latencies = tally.latencies_s;
+  if (latencies.empty()) return 0.0;
+  const auto place = static_cast<std::ptrdiff_t>(std::lround(share * static_cast<double>(latencies.size() - 1)));
+  std::nth_element(latencies.begin(), latencies.begin() + place, latencies.end());
+  return static_cast<double>(latencies[static_cast<std::size_t>(place)]);
+}
+
 nlohmann::json summary_of(const TrackRecord& record) {
   nlohmann::json summary;
   summary["source"] = record.source;
@@ -122,6 +129,13 @@ nlohmann::json summary_of(const TrackRecord& record) {
       record.tracking_s > 0 ? static_cast<double>(record.reports.size()) / record.tracking_s : 0.0;
   summary["interrupted"] = record.interrupted;
   summary["warnings"] = record.warnings;
+  if (const auto& live = record.live) {
+    summary["live"] = {{"dropped_by_camera", live->dropped},
+                       {"discarded", live->discarded},
+                       {"latency_p50_s", latency_quantile(*live, 0.5)},
+                       {"latency_p99_s", latency_quantile(*live, 0.99)},
+                       {"latency_max_s", latency_quantile(*live, 1.0)}};
+  }
   if (const auto& refinement = record.refinement) {
     summary["refinement"] = {{"rms_px_before", refinement->rms_px_before},
                              {"rms_px_after", refinement->rms_px_after},
@@ -151,6 +165,14 @@ std::vector<std::string> table_lines(const TrackRecord& record) {
     lines.push_back(fmt::format("refinement: reprojection {:.3f} -> {:.3f} px RMS over {} sightings in {:.1f} s",
                                 refinement->rms_px_before, refinement->rms_px_after, refinement->sightings,
                                 refinement->seconds));
+  }
+  if (const auto& live = record.live) {
+    lines.push_back(
+        fmt::format("live: {} frames dropped by the camera, {} discarded; exposure to pose {:.1f} ms "
+                    "(median), {:.1f} ms (99 %), {:.1f} ms (longest)",
+                    live->dropped, live->discarded, 1e3 * latency_quantile(*live, 0.5),
+                    1e3 * latency_quantile(*live, 0.99), 1e3 * latency_quantile(*live, 1.0)));
+    return lines;
   }
   lines.push_back(fmt::format("speed: {:.1f} frames/s",
                               record.tracking_s > 0 ? static_cast<double>(reports.size()) / record.tracking_s : 0.0));

@@ -20,6 +20,16 @@ struct OverlaySample {
   cv::Mat picture;
 };
 
+/// How a live camera was kept up with.
+struct LiveTally {
+  std::uint64_t dropped = 0;       ///< frames that the camera counted and that never came
+  std::uint64_t discarded = 0;     ///< frames that came while the tracker was not ready for them
+  std::vector<float> latencies_s;  ///< of every frame, from the middle of its exposure until its pose was told
+};
+
+/// The latency that a share (0 to 1) of the frames stays within, s; 0 where there is none.
+double latency_quantile(const LiveTally& tally, double share);
+
 /// All that a camera track leaves, before it is written.
 struct TrackRecord {
   Camera camera;
@@ -29,6 +39,7 @@ struct TrackRecord {
   std::vector<FrameReport> reports;  ///< one per image
   PointMap map;
   std::optional<RefinementSummary> refinement;
+  std::optional<LiveTally> live;  ///< of a live camera
   std::vector<std::string> warnings;
   std::vector<OverlaySample> overlays;
   double tracking_s = 0;  ///< reading and tracking, without overlays and refinement

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <chrono>
-
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/camera_following.h"
 #include "app/camera_source.h"
+#include "app/capture_warnings.h"
 #include "app/commands/verbs.h"
-#include "app/frame_overlay.h"
 #include "app/live_messages.h"
 #include "app/live_output.h"
 #include "app/track_record.h"
@@ -20,25 +19,35 @@
 namespace alidade {
 namespace {
 
-enum class Refine { None, Local, Global };
+enum class Refine { Auto, None, Local, Global };
 
 class TrackCameraCommand : public Command {
  public:
   explicit TrackCameraCommand(CLI::App& flags) {
-    flags.add_option("SOURCE", source_, "video, folder or glob of images, or data set folder")->required();
+    flags
+        .add_option("SOURCE", source_,
+                    "video, folder or glob of images, data set folder, or camera: v4l2:/dev/video0, genicam:ADDRESS")
+        ->required();
     flags.add_option("--camera", camera_file_,
                      "intrinsics: our YAML, OpenCV, ROS, Kalibr, COLMAP, mrcal, or the data set's file");
     flags.add_option("--map", map_file_, "track in this map (map.ply, or a result directory) instead of making one");
     flags.add_option("--init-poses", init_poses_, "trajectory with the poses of the first two frames");
     flags.add_option("--scale", scale_, "marker:SIDE_M[:ID] or distance:FRAME_A:FRAME_B:METRES");
     flags.add_option("--fps", fps_hz_, "frames per second of images that have no times")->check(CLI::PositiveNumber);
+    flags.add_option("--frames", follow_.most_frames, "stop after so many; a camera goes on until Ctrl-C")
+        ->check(CLI::PositiveNumber);
+    flags.add_option("--duration", follow_.most_s, "s: stop after that")->check(CLI::PositiveNumber);
     flags.add_option("--stream", stream_, kStreamHelp);
-    options_.add_choice("refine", refine_,
-                        {{"none", Refine::None}, {"local", Refine::Local}, {"global", Refine::Global}},
-                        "bundle adjustment: none, of the last keyframes, or also of all in the end");
+    options_.add_choice(
+        "refine", refine_,
+        {{"auto", Refine::Auto}, {"none", Refine::None}, {"local", Refine::Local}, {"global", Refine::Global}},
+        "bundle adjustment: none, of the last keyframes, or also of all in the end; auto: global, "
+        "of a live camera, whose frames have no end, local");
     options_.add("lag", lag_, "frames",
                  "in a known map: frames after it that a pose goes by as well; -1: all of the recording");
-    options_.add("overlay", overlay_, "", "write overlay.mp4: the frames with what was found in them");
+    options_.add("overlay", overlay_, "",
+                 "write overlay.mp4: the frames with what was found in them; auto: not of a live camera");
+    bind(options_, flags, live_.options);
     tracker_.sift.most = 0;
     bind(options_, tracker_);
     options_.add_check([this] {
@@ -52,7 +61,9 @@ class TrackCameraCommand : public Command {
     const Trajectory given = init_poses_.empty() ? Trajectory{} : read_trajectory(init_poses_).poses;
     std::optional<PointMap> known_map;
     if (!map_file_.empty()) known_map = read_map();
-    CameraSource source = open_camera_source(source_, camera_file_, fps_hz_);
+    live_.events = warn_of_news(context);
+    CameraSource source = open_camera_source(source_, camera_file_, fps_hz_, live_);
+    choose_defaults(source.is_live);
     CameraTracker tracker(source.camera, effective_options(source.camera), std::move(known_map), given);
     std::optional<LiveOutput> live;
     if (!stream_.empty()) live.emplace(context, stream_, hello_message(hello(source, tracker)));
@@ -62,9 +73,9 @@ class TrackCameraCommand : public Command {
     record.camera = source.camera;
     record.source = source.frames->describe();
     record.has_times = source.frames->has_times();
-    follow(context, source, tracker, directory, live ? &*live : nullptr, record);
-    if (live) live->end(end_message(live_end(tracker, record)));
-    if (const auto fault = source.frames->fault()) record.warnings.push_back(*fault);
+    const std::optional<DeviceError> fault =
+        follow(context, source, tracker, directory, live ? &*live : nullptr, record);
+    if (const auto loss = source.frames->fault()) record.warnings.push_back(*loss);
     finish(context, tracker, given, wish, record);
     for (const std::string& warning : record.warnings) context.warn(warning);
     write_track(record, directory, context.arguments, options_.to_yaml());
@@ -73,6 +84,7 @@ class TrackCameraCommand : public Command {
     directory.commit(summary);
     context.publish(summary);
     tell(context, fmt::format("written to {}", context.output.string()));
+    if (fault) throw *fault;
     if (record.interrupted) return ExitCode::Interrupted;
     return answer(context, record);
   }
@@ -81,6 +93,7 @@ class TrackCameraCommand : public Command {
   CameraTrackerOptions effective_options(const Camera& camera) const {
     CameraTrackerOptions options = tracker_;
     options.local_refinement = refine_ != Refine::None;
+    options.will_be_refined = !is_endless_ || refine_ == Refine::Global;
     if (options.sift.most == 0) options.sift.most = suggested_feature_count(camera);
     return options;
   }
@@ -90,39 +103,39 @@ class TrackCameraCommand : public Command {
     return read_map_ply(std::filesystem::is_directory(path) ? path / "map.ply" : path);
   }
 
-  void follow(const RunContext& context, CameraSource& source, CameraTracker& tracker, const ResultDirectory& directory,
-              LiveOutput* live, TrackRecord& record) {
-    using Clock = std::chrono::steady_clock;
-    const auto total = source.frames->frame_count();
-    OverlayMovie movie(directory.path("overlay.mp4"), record.has_times ? fps_hz_.value_or(30.0) : 5.0, total);
-    const bool look_for_markers = scale_.starts_with("marker");
-    std::string told;
-    for (;;) {
-      if (context.stop.stop_requested()) {
-        record.interrupted = true;
-        break;
-      }
-      const auto begin = Clock::now();
-      const auto frame = next_image(source);
-      if (!frame) break;
-      const FrameReport report = tracker.step(*frame);
-      tracked_at_once_ += report.state == FrameState::Tracked;
-      if (live) live->send(pose_message(source_, report, source.stamp));
-      record.tracking_s += std::chrono::duration<double>(Clock::now() - begin).count();
-      if (look_for_markers && report.is_keyframe) markers_.push_back({report.index, detect_markers(frame->grey)});
-      if (overlay_) movie.add(*frame, report);
-      Progress progress{"tracking", frame->index + 1, total.value_or(0), ""};
-      const std::string news =
-          report.reason.empty() ? "" : fmt::format("{}: {}", to_string(report.state), report.reason);
-      if (news != told) progress.message = told = news;
-      context.progress(progress);
+  // What depends on the source and was left to us, before options.yaml tells of it.
+  void choose_defaults(bool is_live) {
+    is_endless_ = is_live;
+    if (refine_ == Refine::Auto) refine_ = is_live ? Refine::Local : Refine::Global;
+    overlay_ = overlay_.value_or(!is_live);
+  }
+
+  // What ended the source, where it was a device.
+  std::optional<DeviceError> follow(const RunContext& context, CameraSource& source, CameraTracker& tracker,
+                                    const ResultDirectory& directory, LiveOutput* live, TrackRecord& record) {
+    OverlayMovie movie(directory.path("overlay.mp4"), record.has_times ? fps_hz_.value_or(30.0) : 5.0,
+                       source.frames->frame_count());
+    follow_.source = source_;
+    follow_.looks_for_markers = scale_.starts_with("marker");
+    follow_.movie = *overlay_ ? &movie : nullptr;
+    follow_.live = live;
+    FollowedCamera followed = follow_camera(context, source, tracker, follow_);
+    if (live) {
+      const auto frames = static_cast<std::int64_t>(followed.reports.size());
+      live->end(end_message({frames, followed.tracked_at_once, followed.interrupted}));
     }
+    record.reports = std::move(followed.reports);
+    record.tracking_s = followed.tracking_s;
+    record.interrupted = followed.interrupted;
+    record.live = std::move(followed.tally);
     record.overlays = movie.close();
+    markers_ = std::move(followed.markers);
+    if (followed.fault) record.warnings.emplace_back(followed.fault->what());
+    return followed.fault;
   }
 
   void finish(const RunContext& context, const CameraTracker& tracker, const Trajectory& given, const ScaleWish& wish,
               TrackRecord& record) const {
-    record.reports = tracker.reports();
     LiveMap live = tracker.live_map();
     if (refine_ == Refine::Global && !record.interrupted && live.map.keyframes.size() >= 2) {
       RefinedTrack refined =
@@ -161,13 +174,14 @@ class TrackCameraCommand : public Command {
     record.scale = words;
   }
 
-  LiveHello hello(const CameraSource& source, const CameraTracker& tracker) const {
-    return {"track camera", source_, source.frames->has_times() ? "of the recording" : "none: 1 s per frame",
-            "T_world_camera", tracker.localises_only() || !init_poses_.empty()};
+  static std::string clock_of(const CameraSource& source) {
+    if (source.is_live) return "host, monotonic (CLOCK_MONOTONIC), mid-exposure where the exposure is known";
+    return source.frames->has_times() ? "of the recording" : "none: 1 s per frame";
   }
 
-  LiveEnd live_end(const CameraTracker& tracker, const TrackRecord& record) const {
-    return {static_cast<std::int64_t>(tracker.reports().size()), tracked_at_once_, record.interrupted};
+  LiveHello hello(const CameraSource& source, const CameraTracker& tracker) const {
+    return {"track camera", source_, clock_of(source), "T_world_camera",
+            tracker.localises_only() || !init_poses_.empty()};
   }
 
   // Standard output may be for poses alone.
@@ -188,10 +202,12 @@ class TrackCameraCommand : public Command {
   std::string source_, map_file_, init_poses_, scale_, stream_;
   std::filesystem::path camera_file_;
   std::optional<double> fps_hz_;
-  Refine refine_ = Refine::Global;
+  Refine refine_ = Refine::Auto;
   int lag_ = -1;
-  bool overlay_ = true;
-  std::int64_t tracked_at_once_ = 0;
+  std::optional<bool> overlay_;
+  bool is_endless_ = false;  // a live camera's frames
+  LiveRequest live_;
+  FollowOptions follow_;
   CameraTrackerOptions tracker_;
   std::vector<FrameMarkers> markers_;
 };

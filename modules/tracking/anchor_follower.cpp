@@ -80,6 +80,7 @@ FrameReport AnchorFollower::accept(FrameReport report, const MotionState& predic
   report.covariance = state.covariance.topLeftCorner<6, 6>();
   report.likelihood = update.sightings;
   report.chi2_per_dof = update.chi2_per_dof;
+  report.inlier_count = update.inlier_count;
   report.sigma_px = now.sigma_px;
 
   const PoseBelief belief{predicted.T_world_body, predicted.covariance.topLeftCorner<6, 6>()};

@@ -18,6 +18,17 @@ StarterOptions starter_options(const CameraTrackerOptions& options) {
   return start;
 }
 
+int count_inliers(const FrameReport& report) {
+  return static_cast<int>(
+      std::count_if(report.sightings.begin(), report.sightings.end(), [](const auto& s) { return s.is_inlier; }));
+}
+
+// Features are most of a map's memory, and what an old keyframe has left to tell is little.
+void forget_old_features(LiveMap& live) {
+  constexpr std::size_t kRemembered = 60;  // keyframes: about 100 MB
+  if (live.features.size() > kRemembered) live.features[live.features.size() - kRemembered - 1] = {};
+}
+
 double median(std::vector<double> values) {
   if (values.empty()) return 0.0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -51,9 +62,11 @@ FrameReport CameraTracker::step(const ImageFrame& frame) {
   const bool map_is_ready = !live_.map.points.empty();
   FrameReport report = map_is_ready ? track(frame, flow) : wait(frame, flow);
   previous_ = std::move(flow);
+  report.inlier_count = count_inliers(report);
   reports_.push_back(report);  // kept for refinement: the inliers alone
   reports_.back().expectations.clear();
   std::erase_if(reports_.back().sightings, [](const FrameSighting& s) { return !s.is_inlier; });
+  if (!options_.will_be_refined) reports_.back().sightings = {};
   return report;
 }
 
@@ -89,7 +102,9 @@ void CameraTracker::adopt(StartedMap started, const ImageFrame& frame) {
   living_ = living_points(live_.map);
   for (FrameReport& located : started.in_between) {
     for (FrameReport& report : reports_) {
-      if (report.index == located.index) report = located;
+      if (report.index != located.index) continue;
+      report = located;
+      report.inlier_count = count_inliers(report);
     }
   }
   const Keyframe& a = live_.map.keyframes[0];
@@ -253,7 +268,7 @@ void CameraTracker::add_keyframe(const ImageFrame& frame, Localisation& attempt)
   added.keyframe = {frame.index, frame.time, frame.name, attempt.update->T_world_camera, attempt.update->covariance,
                     {}};
   added.features = *attempt.features;
-  added.grey = frame.grey;
+  if (options_.will_be_refined) added.grey = frame.grey;
   added.found = inliers_of(attempt.found, *attempt.update);
   live_ = with_keyframe(std::move(live_), std::move(added), options_.sigma_px);
   if (!options_.local_refinement) live_ = with_retriangulated_points(camera_, std::move(live_));
@@ -261,6 +276,7 @@ void CameraTracker::add_keyframe(const ImageFrame& frame, Localisation& attempt)
   if (options_.local_refinement) {
     live_ = refine_locally(camera_, std::move(live_), anchored_keyframes_, options_.window, options_.most_fixed);
   }
+  if (!options_.will_be_refined) forget_old_features(live_);
   living_ = living_points(live_.map);
 }
 

@@ -21,6 +21,9 @@ struct CameraTrackerOptions {
   PoseMethod pose = PoseMethod::Ekf;
   int slam_points = 100;  ///< PoseMethod::EkfSlam: most points in its state, MonoSLAM's number at 30 Hz
   FeatureMode features = FeatureMode::Auto;
+  /// Global refinement will follow: sightings of frames and images of keyframes are kept for it. Without, an hour of
+  /// frames takes a hundredth of the memory, and old keyframes are no longer matched with new ones.
+  bool will_be_refined = true;
   bool local_refinement = true;  ///< bundle adjustment of the last keyframes at every new one
   SiftOptions sift;
   FlowOptions flow;

@@ -55,6 +55,7 @@ struct FrameReport {
   double chi2_per_dof = 0;
   double sigma_px = 1;  ///< measurement noise in use
   bool is_keyframe = false;
+  int inlier_count = 0;  ///< of the sightings, kept or not
   std::vector<FrameSighting> sightings;
   std::vector<FrameExpectation> expectations;  ///< one per sighting, or none (a first sight, a report of long ago)
 

@@ -128,7 +128,8 @@ LiveMap with_points_of_pair(const Camera& camera, LiveMap live, const std::vecto
 
 LiveMap with_new_points(const Camera& camera, LiveMap live, const cv::Mat& image, const GrowthOptions& options) {
   const int last = static_cast<int>(live.map.keyframes.size()) - 1;
-  const std::vector<int> neighbours = best_neighbours(live.map, last, options.neighbours);
+  std::vector<int> neighbours = best_neighbours(live.map, last, options.neighbours);
+  std::erase_if(neighbours, [&](int k) { return live.features[static_cast<std::size_t>(k)].features.size() == 0; });
   std::vector<int> grown;
   for (int other : neighbours) {
     const auto points = grow_between(camera, live, last, other, image, options);
