@@ -9,11 +9,12 @@ import threading
 
 from figure_topics.bench import summary
 from figure_topics.capture.programs import test_camera
+from figure_topics.capture.walk import FRAMES, error_of, walk
 from figure_topics.figure import Failed, Figure, Section
 from figure_topics.tables import rows_of
 
 ADDRESS, PORT = "127.0.0.43", 5743
-RATE_HZ, FRAMES = 30, 1800  # a minute
+RATE_HZ = 30
 PERIOD_MS = 1e3 / RATE_HZ
 
 
@@ -38,7 +39,7 @@ class Live:
     """What a live run told while it ran, and left."""
 
     def __init__(self, bench, scene, name, *words, deaf_reader=False):
-        self.scene, out = scene, bench.fresh(f"capture/live/{name}")
+        out = bench.fresh(f"capture/live/{name}")
         log = bench.folder / "capture" / "live" / f"{name}.csv"
         stream = f"tcp://:{PORT}" if deaf_reader else "-"
         command = [bench.program, "track", "camera", f"genicam:{ADDRESS}", "--camera", scene / "camera.yaml", "--frames",
@@ -62,24 +63,19 @@ class Live:
     def latencies_ms(self):
         return [1e-6 * (message["sent_ns"] - message["t_ns"]) for message in self.messages]
 
-    def error(self, bench, name):
-        """Of the poses as they were told, RMS of the centres after Sim(3), in the walk's metres."""
-        poses = {self.pictures[message["sequence"]]: message for message in self.messages}
-        return error_of(bench, self.scene, name, poses)
+    def poses(self):
+        """The messages by the picture that was shown."""
+        return {self.pictures[message["sequence"]]: message for message in self.messages}
 
 
-def error_of(bench, scene, name, poses):
-    times = [line.split()[0] for line in (scene / "truth.tum").read_text().splitlines() if not line.startswith("#")]
-    lines = []
-    for picture, message in sorted(poses.items()):
-        if message["state"] != "tracked":
-            continue
-        pose = message["T_world_camera"]
-        w, *xyz = pose["q_wxyz"]
-        lines.append(" ".join(map(str, [times[picture], *pose["p_m"], *xyz, w])))
-    estimate = bench.folder / "capture" / "live" / f"{name}.tum"
-    estimate.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    return bench.evaluate(estimate, scene / "truth.tum", "--align", "sim3")["ape_translation_m"]["rmse"]
+def tracked(poses):
+    """{picture: (px, py, pz, qx, qy, qz, qw)} of the messages that tell a measured pose."""
+    found = {}
+    for picture, message in poses.items():
+        if message["state"] == "tracked":
+            w, *xyz = message["T_world_camera"]["q_wxyz"]
+            found[picture] = [*message["T_world_camera"]["p_m"], *xyz, w]
+    return found
 
 
 def offline(bench, scene, name, *words):
@@ -90,18 +86,18 @@ def offline(bench, scene, name, *words):
 
 
 def measure(bench):
-    scene = bench.scene("capture/live/scene", "--frames", FRAMES + 60)
-    told_latencies = {}
+    scene = walk(bench)
     own, own_poses = offline(bench, scene, "offline")
     _, known_poses = offline(bench, scene, "offline-known", "--map", own, "--lag", 0)
     for name, words, poses in [("own-map", [], own_poses), ("known-map", ["--map", own], known_poses)]:
         live = Live(bench, scene, name, *words)
-        latencies = told_latencies[name] = live.latencies_ms()
+        latencies = live.latencies_ms()
         yield f"live/{name}/frames", len(live.messages)
         yield f"live/{name}/lost", live.told["dropped_by_camera"] + live.told["discarded"]
         yield f"live/{name}/latency-p50", quantile(latencies, 0.5)
         yield f"live/{name}/latency-p99", quantile(latencies, 0.99)
-        there, here = live.error(bench, name), error_of(bench, scene, f"{name}-offline", poses)
+        there = error_of(bench, scene, name, tracked(live.poses()))
+        here = error_of(bench, scene, f"{name}-offline", tracked(poses))
         yield f"live/{name}/error", 1e3 * there
         yield f"live/{name}/error-to-offline", there / here
     deaf = Live(bench, scene, "deaf", "--map", own, deaf_reader=True)
