@@ -45,7 +45,10 @@ FrameReport LiveTracker::step(const ImageFrame& frame) {
     reason = reason_;
   }
   changed_.notify_all();
-  return follower_.step(frame, reason);
+  FrameReport report = follower_.step(frame, reason);
+  const std::scoped_lock lock(mutex_);
+  is_followed_ = report.state == FrameState::Tracked;
+  return report;
 }
 
 void LiveTracker::finish() {
@@ -69,7 +72,8 @@ void LiveTracker::work(std::stop_token stop) try {
     lock.lock();
     if (anchor) anchor_ = std::move(anchor);
     reason_ = report.reason;
-    const double pause_s = std::max(options_.least_pause_s, busy_s * (1.0 / options_.map_share - 1.0));
+    const double rest_s = is_followed_ ? busy_s * (1.0 / options_.map_share - 1.0) : 0.0;  // the lost wait for it
+    const double pause_s = std::max(options_.least_pause_s, rest_s);
     changed_.wait_for(lock, stop, Seconds(pause_s), [] { return false; });
   }
 } catch (...) {

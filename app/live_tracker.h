@@ -51,6 +51,7 @@ class LiveTracker {
   std::optional<ImageFrame> newest_;
   std::optional<TrackAnchor> anchor_;
   std::string reason_ = "the map is being made";
+  bool is_followed_ = false;
   std::exception_ptr error_;
   std::jthread thread_;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/anchor_follower.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "tracking/localiser.h"
@@ -39,10 +40,18 @@ FrameReport AnchorFollower::step(const ImageFrame& frame, const std::string& rea
   report.time = frame.time;
   report.name = frame.name;
   report.reason = reason;
-  if (!newer_ && !last_) return report;
+  remember(frame);
+  const bool is_lost = !last_ || missed_ > 0;
+  if (newer_ && is_lost) {
+    if (!chaser_ || newer_->time > chaser_->time) chaser_ = std::move(newer_);
+    newer_.reset();
+  }
+  if (chaser_) chase();
+  if (!last_) return report;
   const FlowImage flow = make_flow_image(frame.grey, options_.flow);
   for (std::optional<TrackAnchor>* from : {&newer_, &last_}) {
-    if (!*from) continue;
+    const bool is_too_old = from == &last_ && missed_ > options_.most_predicted;
+    if (!*from || is_too_old) continue;
     const MotionState predicted = (*from)->motion.predicted(frame.time);
     const auto attempt = follow(**from, predicted, flow);
     if (!attempt) continue;
@@ -50,9 +59,41 @@ FrameReport AnchorFollower::step(const ImageFrame& frame, const std::string& rea
     newer_.reset();
     return accept(std::move(report), predicted, *attempt, flow);
   }
-  if (newer_ && (!last_ || missed_ > 0)) last_ = std::move(newer_);
   newer_.reset();
   return pass(std::move(report));
+}
+
+void AnchorFollower::remember(const ImageFrame& frame) {
+  constexpr std::size_t kMostFrames = 150;  // 5 s: as long as finding a place in a large map takes on a busy machine
+  constexpr std::size_t kMostBytes = 100'000'000;
+  recent_.push_back(frame);
+  const std::size_t most = std::min(kMostFrames, 1 + kMostBytes / std::max<std::size_t>(1, frame.grey.total()));
+  while (recent_.size() > most) recent_.pop_front();
+}
+
+// Leads a late anchor through the frames since, in hops that flow can reach, a few at a time: no frame waits for it.
+void AnchorFollower::chase() {
+  constexpr int kHops = 3, kFramesPerHop = 3;
+  for (int hop = 0; hop < kHops; ++hop) {
+    const auto is_later = [this](const ImageFrame& frame) { return frame.time > chaser_->time; };
+    const auto first = std::find_if(recent_.begin(), recent_.end(), is_later);
+    if (recent_.end() - first <= kFramesPerHop) {
+      last_ = std::exchange(chaser_, std::nullopt);
+      missed_ = 1;
+      return;
+    }
+    const ImageFrame& frame = first[kFramesPerHop - 1];
+    const FlowImage flow = make_flow_image(frame.grey, options_.flow);
+    MotionState expected = chaser_->motion.predicted(frame.time);
+    auto attempt = follow(*chaser_, expected, flow);
+    if (!attempt) {  // after a jump its speed says nothing
+      expected.T_world_body = chaser_->motion.state().T_world_body;
+      attempt = follow(*chaser_, expected, flow);
+    }
+    if (!attempt) return chaser_.reset();
+    chaser_->motion.follow(frame.time, attempt->update);
+    move_on(*chaser_, frame.time, *attempt, flow);
+  }
 }
 
 // The localiser wants a map: that of the anchor's points alone.
@@ -84,8 +125,6 @@ FrameReport AnchorFollower::accept(FrameReport report, const MotionState& predic
   report.sigma_px = now.sigma_px;
 
   const PoseBelief belief{predicted.T_world_body, predicted.covariance.topLeftCorner<6, 6>()};
-  std::vector<MapPoint> points;
-  std::vector<FoundPoint> tracks;
   for (std::size_t i = 0; i < attempt.found.size(); ++i) {
     const auto k = static_cast<std::size_t>(attempt.found[i].point);
     const FoundPoint track{now.tracks[k].point, -1, attempt.found[i].pixel};
@@ -93,16 +132,27 @@ FrameReport AnchorFollower::accept(FrameReport report, const MotionState& predic
     const auto expected = expect(camera_, belief, now.points[k], now.sigma_px);
     report.expectations.push_back(expected ? FrameExpectation{expected->pixel, expected->S}
                                            : FrameExpectation{track.pixel, {}});
-    if (!update.is_inlier[i]) continue;
-    points.push_back(now.points[k]);
-    tracks.push_back(track);
   }
-  now.time = report.time;
-  now.image = flow;
-  now.points = std::move(points);
-  now.tracks = std::move(tracks);
+  move_on(now, report.time, attempt, flow);
   missed_ = 0;
+  chaser_.reset();
   return report;
+}
+
+// What was found there is what is followed from there.
+void AnchorFollower::move_on(TrackAnchor& anchor, Timestamp time, const Attempt& attempt, const FlowImage& flow) {
+  std::vector<MapPoint> points;
+  std::vector<FoundPoint> tracks;
+  for (std::size_t i = 0; i < attempt.found.size(); ++i) {
+    if (!attempt.update.is_inlier[i]) continue;
+    const auto k = static_cast<std::size_t>(attempt.found[i].point);
+    points.push_back(anchor.points[k]);
+    tracks.push_back({anchor.tracks[k].point, -1, attempt.found[i].pixel});
+  }
+  anchor.time = time;
+  anchor.image = flow;
+  anchor.points = std::move(points);
+  anchor.tracks = std::move(tracks);
 }
 
 // The last image stays what flow starts from; soon an anchor takes its place.

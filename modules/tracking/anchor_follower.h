@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,7 +27,9 @@ struct TrackAnchor {
 
 /// Follows a camera by optical flow alone, from anchors that come late: in a few milliseconds per frame, however long
 /// it takes to find features, to let a map grow and to adjust it. A new anchor takes back what flow has drifted since
-/// the one before; flow leads from the anchor's image straight to the next frame.
+/// the one before; flow leads from the anchor's image straight to the next frame, or, where the camera was lost,
+/// through those between, a few
+/// at every step.
 class AnchorFollower {
  public:
   AnchorFollower(Camera camera, CameraTrackerOptions options);
@@ -43,15 +46,20 @@ class AnchorFollower {
     PoseUpdate update;
   };
 
+  void remember(const ImageFrame& frame);
+  void chase();
   std::optional<Attempt> follow(const TrackAnchor& from, const MotionState& predicted, const FlowImage& flow) const;
+  static void move_on(TrackAnchor& anchor, Timestamp time, const Attempt& attempt, const FlowImage& flow);
   FrameReport accept(FrameReport report, const MotionState& predicted, const Attempt& attempt, const FlowImage& flow);
   FrameReport pass(FrameReport report);
 
   Camera camera_;
   CameraTrackerOptions options_;
-  std::optional<TrackAnchor> last_;   // the last frame, as the anchor of the next
-  std::optional<TrackAnchor> newer_;  // one that has come since
-  int missed_ = 0;                    // frames since the last measured one
+  std::optional<TrackAnchor> last_;    // the last frame, as the anchor of the next
+  std::optional<TrackAnchor> newer_;   // one that has come since
+  std::optional<TrackAnchor> chaser_;  // a late one on its way to the newest frame, while the camera is lost
+  std::deque<ImageFrame> recent_;      // frames for it to be led through
+  int missed_ = 0;                     // frames since the last measured one
 };
 
 }  // namespace alidade

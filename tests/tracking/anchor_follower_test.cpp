@@ -128,6 +128,16 @@ TEST(AnchorFollower, PredictsThenIsLostAndIsFoundByTheNextAnchor) {
   EXPECT_LT(error_m(found, 8), 2e-3);
 }
 
+TEST(AnchorFollower, IsLedThroughTheFramesSinceAnAnchorThatCameVeryLate) {
+  AnchorFollower follower(kCamera, {});
+  for (int frame = 1; frame < 20; ++frame) follower.step(image_of(frame, wall_from(frame)), "");
+  follower.put(anchor_at(0));
+  for (int frame = 20; frame < 22; ++frame) follower.step(image_of(frame, wall_from(frame)), "");
+  const FrameReport report = follower.step(image_of(22, wall_from(22)), "");
+  ASSERT_EQ(report.state, FrameState::Tracked);
+  EXPECT_LT(error_m(report, 22), 5e-3);
+}
+
 TEST(AnchorFollower, FollowsNoMorePointsThanItMay) {
   CameraTrackerOptions options;
   options.most_tracks = 50;
