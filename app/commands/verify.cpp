@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/verbs.h"
-#include "app/recording_report.h"
+#include "app/recording_checks.h"
 #include "app/result_directory.h"
 #include "capture/recording/recording_verification.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/recording_report.h"
+#include "app/recording_checks.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
