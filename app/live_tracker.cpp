@@ -18,17 +18,12 @@ void step_back() {
   ::setpriority(PRIO_PROCESS, thread, ::getpriority(PRIO_PROCESS, thread) + kSteps);
 }
 
-CameraTrackerOptions follower_options(CameraTrackerOptions options, int most_followed) {
-  options.most_tracks = std::min(options.most_tracks, most_followed);
-  return options;
-}
-
 }  // namespace
 
 LiveTracker::LiveTracker(CameraTracker& tracker, LiveTrackerOptions options)
     : tracker_(tracker),
       options_(options),
-      follower_(tracker.camera(), follower_options(tracker.options(), options.most_followed)),
+      follower_(tracker.camera(), tracker.options()),
       thread_([this](std::stop_token stop) { work(stop); }) {}
 
 LiveTracker::~LiveTracker() {
@@ -41,6 +36,7 @@ FrameReport LiveTracker::step(const ImageFrame& frame) {
     const std::scoped_lock lock(mutex_);
     if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
     newest_ = frame;
+    before_ = follower_.last();
     if (anchor_) follower_.put(*std::exchange(anchor_, std::nullopt));
     reason = reason_;
   }
@@ -64,8 +60,10 @@ void LiveTracker::work(std::stop_token stop) try {
   std::unique_lock lock(mutex_);
   while (changed_.wait(lock, stop, [this] { return newest_.has_value(); })) {
     const ImageFrame frame = *std::exchange(newest_, std::nullopt);
+    std::optional<TrackAnchor> before = std::exchange(before_, std::nullopt);
     lock.unlock();
     const auto begin = Clock::now();
+    if (before) tracker_.resume_from(std::move(*before));
     const FrameReport report = tracker_.step(frame);
     std::optional<TrackAnchor> anchor = tracker_.anchor();
     const double busy_s = Seconds(Clock::now() - begin).count();

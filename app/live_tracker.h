@@ -18,13 +18,12 @@ struct LiveTrackerOptions {
   /// At most this share of its time the map's half works: the rest is for the frames and for the camera.
   double map_share = 0.7;
   double least_pause_s = 0.02;  ///< between two frames of the map's half
-  int most_followed = 300;      ///< points per frame: half of what is followed offline, in 7 ms
 };
 
 /// Answers for every frame at once: flow carries the last anchor on, while in a thread of its own the tracker takes
-/// what frames it can, the newest first, finds features, lets the map grow and adjusts it, and hands back anchors that
-/// enter at the next frame. What is offline one after the other happens side by side, at the price of results that
-/// depend on time.
+/// what frames it can, the newest first and from where flow has led, finds features, lets the map grow and adjusts it,
+/// and hands back anchors that enter at the next frame. What is offline one after the other happens side by side, at
+/// the price of results that depend on time.
 class LiveTracker {
  public:
   /// `tracker` is the thread's alone until finish().
@@ -49,6 +48,7 @@ class LiveTracker {
   std::mutex mutex_;  // for what follows
   std::condition_variable_any changed_;
   std::optional<ImageFrame> newest_;
+  std::optional<TrackAnchor> before_;  // the frame before the newest, where flow has followed the map to it
   std::optional<TrackAnchor> anchor_;
   std::string reason_ = "the map is being made";
   bool is_followed_ = false;

@@ -33,7 +33,7 @@ void bind(OptionFields& fields, CameraTrackerOptions& o) {
   fields.add("growth.neighbours", o.growth.neighbours, "", "keyframes that a new one is matched with");
   fields.add("growth.ratio", o.growth.ratio, "", "descriptor distance, nearest to second nearest");
   fields.add("growth.least_angle_deg", o.growth.least_angle_deg, "deg", "between the rays of a new point");
-  fields.add("most_tracks", o.most_tracks, "", "points followed by optical flow");
+  fields.add("most_tracks", o.most_tracks, "", "points followed by optical flow; of a live camera at most 300");
   fields.add("least_inliers", o.least_inliers, "", "points without which no pose is believed");
   fields.add("keyframe_share", o.keyframe_share, "",
              "of the last keyframe's points still followed: below it a new one");

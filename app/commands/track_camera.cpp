@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -93,6 +95,8 @@ class TrackCameraCommand : public Command {
   CameraTrackerOptions effective_options(const Camera& camera) const {
     CameraTrackerOptions options = tracker_;
     options.local_refinement = refine_ != Refine::None;
+    constexpr int kMostFollowed = 300;  // of a live camera: in 7 ms per frame
+    if (is_endless_) options.most_tracks = std::min(options.most_tracks, kMostFollowed);
     options.will_be_refined = !is_endless_ || refine_ == Refine::Global;
     if (options.sift.most == 0) options.sift.most = suggested_feature_count(camera);
     return options;

@@ -40,6 +40,9 @@ class AnchorFollower {
   /// The next image, in order of time. Waits (FrameState) until there was an anchor; `reason`: why there is none yet.
   FrameReport step(const ImageFrame& frame, const std::string& reason);
 
+  /// The last frame, as an anchor for the next; empty where the camera was not measured in it.
+  std::optional<TrackAnchor> last() const { return missed_ == 0 ? last_ : std::nullopt; }
+
  private:
   struct Attempt {
     std::vector<FoundPoint> found;

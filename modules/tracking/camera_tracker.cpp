@@ -79,6 +79,15 @@ std::optional<TrackAnchor> CameraTracker::anchor() const {
   return anchor;
 }
 
+void CameraTracker::resume_from(TrackAnchor last) {
+  previous_time_ = last.time;
+  previous_ = std::move(last.image);
+  motion_ = std::move(last.motion);
+  tracks_ = std::move(last.tracks);
+  has_pose_ = true;
+  missed_ = 0;
+}
+
 FrameReport CameraTracker::wait(const ImageFrame& frame, const FlowImage& flow) {
   FrameReport report;
   report.index = frame.index;

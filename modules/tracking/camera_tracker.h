@@ -34,6 +34,10 @@ class CameraTracker {
   /// the next; empty while the camera is not measured.
   std::optional<TrackAnchor> anchor() const;
 
+  /// Goes on from a frame in which somebody else has followed the points of this map, as if it had taken that frame
+  /// itself.
+  void resume_from(TrackAnchor last);
+
   const LiveMap& live_map() const { return live_; }
   const Camera& camera() const { return camera_; }
   const CameraTrackerOptions& options() const { return options_; }

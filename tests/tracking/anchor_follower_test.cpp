@@ -138,6 +138,19 @@ TEST(AnchorFollower, IsLedThroughTheFramesSinceAnAnchorThatCameVeryLate) {
   EXPECT_LT(error_m(report, 22), 5e-3);
 }
 
+TEST(AnchorFollower, HandsOnTheFrameThatItMeasuredLast) {
+  AnchorFollower follower(kCamera, {});
+  EXPECT_FALSE(follower.last().has_value());
+  follower.put(anchor_at(0));
+  const FrameReport report = follower.step(image_of(1, wall_from(1)), "");
+  const auto last = follower.last();
+  ASSERT_TRUE(last.has_value());
+  EXPECT_EQ(last->time, time_of(1));
+  EXPECT_EQ(static_cast<int>(last->tracks.size()), report.inlier_count);
+  follower.step(image_of(2, cv::Mat(kCamera.height, kCamera.width, CV_8U, cv::Scalar(0))), "");
+  EXPECT_FALSE(follower.last().has_value());
+}
+
 TEST(AnchorFollower, FollowsNoMorePointsThanItMay) {
   CameraTrackerOptions options;
   options.most_tracks = 50;
