@@ -9,6 +9,17 @@
 namespace alidade {
 namespace {
 
+// Few of many points will be followed: from where the pose that all of them gave says that each is, so that no noise of
+// its own goes along.
+TrackAnchor settled(const Camera& camera, TrackAnchor anchor) {
+  const Eigen::Isometry3d T_camera_world = anchor.motion.state().T_world_body.inverse();
+  for (std::size_t i = 0; i < anchor.tracks.size(); ++i) {
+    const auto seen = project(camera, T_camera_world * anchor.points[i].p_world);
+    if (seen) anchor.tracks[i].pixel = seen->pixel;
+  }
+  return anchor;
+}
+
 // Every n-th keeps the spread over the image.
 TrackAnchor thinned(TrackAnchor anchor, int most) {
   const std::size_t count = anchor.tracks.size();
@@ -31,7 +42,7 @@ AnchorFollower::AnchorFollower(Camera camera, CameraTrackerOptions options)
     : camera_(camera), options_((validate(options), std::move(options))) {}
 
 void AnchorFollower::put(TrackAnchor anchor) {
-  newer_ = thinned(std::move(anchor), options_.most_tracks);
+  newer_ = settled(camera_, thinned(std::move(anchor), options_.most_tracks));
 }
 
 FrameReport AnchorFollower::step(const ImageFrame& frame, const std::string& reason) {

@@ -21,15 +21,14 @@ struct TrackAnchor {
   FlowImage image;
   LiveMotion motion;
   std::vector<MapPoint> points;    ///< of the map: those in the image
-  std::vector<FoundPoint> tracks;  ///< where they are; `point` counts in the map
+  std::vector<FoundPoint> tracks;  ///< where they were found; `point` counts in the map
   double sigma_px = 1.0;
 };
 
 /// Follows a camera by optical flow alone, from anchors that come late: in a few milliseconds per frame, however long
 /// it takes to find features, to let a map grow and to adjust it. A new anchor takes back what flow has drifted since
 /// the one before; flow leads from the anchor's image straight to the next frame, or, where the camera was lost,
-/// through those between, a few
-/// at every step.
+/// through those between, a few at every step.
 class AnchorFollower {
  public:
   AnchorFollower(Camera camera, CameraTrackerOptions options);

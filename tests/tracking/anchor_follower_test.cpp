@@ -100,6 +100,16 @@ TEST(AnchorFollower, FollowsFromAnAnchorThatCameLate) {
   }
 }
 
+TEST(AnchorFollower, GoesByTheAnchorsPoseAndNotByTheNoiseOfWhatIsFollowed) {
+  AnchorFollower follower(kCamera, {});
+  TrackAnchor anchor = anchor_at(0);
+  for (FoundPoint& track : anchor.tracks) track.pixel.x() += 1.5;  // as if the camera were elsewhere
+  follower.put(std::move(anchor));
+  const FrameReport report = follower.step(image_of(1, wall_from(1)), "");
+  ASSERT_EQ(report.state, FrameState::Tracked);
+  EXPECT_LT(error_m(report, 1), 2e-3);
+}
+
 TEST(AnchorFollower, TakesTheWorldOfANewerAnchor) {
   AnchorFollower follower(kCamera, {});
   follower.put(anchor_at(0));

@@ -3,26 +3,12 @@
 
 from figure_topics.bench import ROOT, last_line
 from figure_topics.capture.programs import program
-from figure_topics.capture.walk import error_of, walk
+from figure_topics.capture.walk import error_of, poses_by_frame, walk
 from figure_topics.figure import Figure, Section, Skipped
 from figure_topics.tables import rows_of
 
 SHOWN = 300
 FIRST = "000[0-2]*.png"  # 300 images
-
-
-def poses_by_frame(result):
-    """{frame: (px, py, pz, qx, qy, qz, qw)} of the frames that were tracked."""
-    frames = {int(row["t_ns"]): int(row["index"]) for row in rows_of(result / "frames.csv") if row["state"] == "tracked"}
-    poses = {}
-    for line in (result / "trajectory.tum").read_text(encoding="utf-8").splitlines():
-        if line.startswith("#"):
-            continue
-        seconds, nanoseconds = line.split()[0].split(".")
-        frame = frames.get(int(seconds) * 10**9 + int(nanoseconds.ljust(9, "0")))
-        if frame is not None:
-            poses[frame] = line.split()[1:]
-    return poses
 
 
 def measure(bench):
