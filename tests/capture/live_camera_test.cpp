@@ -76,7 +76,8 @@ class LiveCameraTest : public testing::Test {
   LiveCameraTest() {
     facts_.size = {2, 2};
     facts_.period = milliseconds(1);
-    options_ = {.least_stall_s = 0.02, .first_frame_s = 0.02, .reopen_after_s = 0.03, .retry_s = 0.01};
+    // Long beside what a busy machine may delay a frame, short beside a test's patience.
+    options_ = {.least_stall_s = 0.15, .first_frame_s = 0.1, .reopen_after_s = 0.1, .retry_s = 0.01};
   }
 
   std::unique_ptr<FrameSource> open(std::vector<std::deque<Act>> scripts) {
@@ -154,12 +155,12 @@ TEST_F(LiveCameraTest, ComesBackAfterAnUnplug) {
 }
 
 TEST_F(LiveCameraTest, TellsOfAStallInTimeAndOfItsEnd) {
-  const auto camera = open({{frame(0), silence(milliseconds(40)), frame(40)}});
+  const auto camera = open({{frame(0), silence(milliseconds(220)), frame(40)}});
   camera->next();
   const HostTime last = HostClock::now();
   camera->next();
   ASSERT_EQ(kinds(), (std::vector{Kind::Opened, Kind::Streaming, Kind::Stalled, Kind::Resumed, Kind::FramesDropped}));
-  EXPECT_GE(events_[2].time - last, milliseconds(17));
+  EXPECT_GE(events_[2].time - last, milliseconds(145));
 }
 
 TEST_F(LiveCameraTest, OpensAnewACameraThatStaysSilent) {
@@ -172,7 +173,7 @@ TEST_F(LiveCameraTest, OpensAnewACameraThatStaysSilent) {
 TEST_F(LiveCameraTest, TakesTheRestOfACutOffFrameForNoSignOfLife) {
   Act rest = frame(1);
   rest.is_damaged = true;
-  const auto camera = open({{frame(0), silence(milliseconds(30)), rest, silence(std::chrono::hours(1))}, {frame(0)}});
+  const auto camera = open({{frame(0), silence(milliseconds(190)), rest, silence(std::chrono::hours(1))}, {frame(0)}});
   camera->next();
   EXPECT_TRUE(camera->next()->stamp.is_damaged);
   EXPECT_FALSE(camera->next()->stamp.is_damaged);
@@ -188,7 +189,7 @@ TEST_F(LiveCameraTest, TakesACameraThatNeverStartsForStalled) {
 
 TEST_F(LiveCameraTest, WaitsWithoutComplaintForATrigger) {
   options_.is_triggered = true;
-  const auto camera = open({{frame(0), silence(milliseconds(150)), frame(1)}});
+  const auto camera = open({{frame(0), silence(milliseconds(500)), frame(1)}});
   camera->next();
   EXPECT_EQ(camera->next()->index, 1);
   EXPECT_EQ(kinds(), (std::vector{Kind::Opened, Kind::Streaming}));
@@ -207,7 +208,7 @@ TEST_F(LiveCameraTest, EndsSoonWhenItIsAskedTo) {
 }
 
 TEST_F(LiveCameraTest, GivesUpAfterTheTimeSet) {
-  options_.give_up_s = 0.15;
+  options_.give_up_s = 0.4;
   const auto camera = open({{frame(0), gone()}});
   camera->next();
   try {
