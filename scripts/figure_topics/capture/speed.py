@@ -25,7 +25,8 @@ def measure(bench):
             yield f"throughput/{camera}/{size}/rate", ours["fps"]
             yield f"throughput/{camera}/{size}/bytes", ours["MB/s"]
             yield f"throughput/{camera}/{size}/processor", ours["CPU_%"]
-            yield f"throughput/{camera}/{size}/rate-to-bare-aravis", ours["fps"] / bare["fps"]
+            yield f"throughput/{camera}/{size}/bare-aravis-rate", bare["fps"]
+            yield f"throughput/{camera}/{size}/bare-aravis-lost", bare["lost"] + bare["damaged"]
 
 
 FIGURES = [figure for camera in CAMERAS for size in SIZES for figure in (
@@ -33,7 +34,8 @@ FIGURES = [figure for camera in CAMERAS for size in SIZES for figure in (
     Figure(f"throughput/{camera}/{size}/rate", "frames/s"),
     Figure(f"throughput/{camera}/{size}/bytes", "MB/s"),
     Figure(f"throughput/{camera}/{size}/processor", "% of a core"),
-    Figure(f"throughput/{camera}/{size}/rate-to-bare-aravis"),
+    Figure(f"throughput/{camera}/{size}/bare-aravis-rate", "frames/s"),
+    Figure(f"throughput/{camera}/{size}/bare-aravis-lost", "frames"),
 )]  # fmt: skip
 
 SECTIONS = [Section("throughput", FIGURES, measure)]
