@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "camera/measurement.h"
+#include "camera/receiver.h"
+#include "core/time.h"
+
+namespace alidade {
+
+/// Where the times come from at which receivers see a target.
+enum class ScanLaw {
+  Delays,    ///< receiver k sees everything delays_s[k] after the period's begin
+  Rotating,  ///< receiver k's fan beam turns about the vertical once a period: a target is seen as it passes
+  Cued,      ///< the first receiver sees all at once; the others are steered from target to target, which takes time
+};
+
+/// Options of the scene of the simulated figures: objects that fly together, receivers around them.
+struct TargetSceneOptions {
+  int receivers = 3;  ///< evenly around the targets, all looking up at `elevation_rad`; 2 stand at right angles
+  int targets = 2;
+  int periods = 5;
+  double period_s = 1.0;
+  double least_range_m = 100.0;     ///< of the receivers' distance from the targets' middle, drawn once for all
+  double greatest_range_m = 200.0;  ///< "
+  double elevation_rad = 0.6155;    ///< atan(1/√2): the lines of sight of three receivers are then orthogonal
+  ScanLaw scan_law = ScanLaw::Delays;
+  std::vector<double> delays_s{0.0, 0.1, 0.2};  ///< of receivers 0, 1, ...; repeated where there are more
+  double slew_rad_s = 1.0;                      ///< how fast cued receivers turn
+  double sigma_m = 0.1;                         ///< bearings err by sigma_m / range across the line of sight, rad
+  double spread_m = 15.0;                       ///< the targets' first positions lie within a cube of this side
+  double least_distance_m = 3.0;                ///< between any two of them
+  double velocity_sigma_m_s = 15.6;             ///< of each coordinate of their common velocity
+  double top_speed_m_s = 60.0;                  ///< faster ones are drawn again
+  double scatter_m_s = 1.0;                     ///< of each coordinate of each one's velocity beside the common one
+  double acceleration_m_s2 = 0.0;               ///< of each coordinate of each one's constant acceleration
+  double detection_probability = 1.0;
+  double false_bearings = 0.0;  ///< mean of their (Poisson) number per receiver and period
+  double cone_rad = 0.349066;   ///< full angle of the cone about the targets' middle in which they lie evenly: 20°
+  bool comes_and_goes =
+      false;  ///< every second target appears after a fifth of the time, or leaves a fifth before its end
+  unsigned seed = 1;
+};
+
+/// Throws std::invalid_argument naming field, value and bound.
+void validate(const TargetSceneOptions& options);
+
+/// The true path of a target: p0 + v t + a t² / 2, t from `origin`.
+struct TargetPath {
+  int target = 0;  ///< 0, 1, ...
+  Timestamp origin{}, birth{}, death{};
+  Eigen::Vector3d p0_world, v_world, a_world;
+};
+
+/// Where the target of a path is (m), and how fast (m/s); at any time.
+Eigen::Vector3d position_at(const TargetPath& path, Timestamp time);
+Eigen::Vector3d velocity_at(const TargetPath& path, Timestamp time);
+
+/// Receivers, what is true, and what was read.
+struct TargetScene {
+  std::vector<Receiver> receivers;  ///< direction finders that face the targets' middle; world z is up
+  std::vector<TargetPath> paths;
+  std::vector<ReceiverReading> readings;  ///< in order of time; each names its target, false ones −1
+  double range_m = 0.0;                   ///< of the receivers, as drawn
+};
+
+/// Period `i` of the scene begins at i · period_s. The same options give the same scene.
+/// Source: UAV paper page, "Their experiment" and "Settings that reproduce it".
+TargetScene make_target_scene(const TargetSceneOptions& options);
+
+}  // namespace alidade
