@@ -24,6 +24,7 @@ std::vector<Verb> all_verbs() {
           simulate_board_verb(),
           experiment_camera_verb(),
           experiment_body_verb(),
+          experiment_targets_verb(),
           experiment_calibration_verb(),
           evaluate_verb(),
           view_verb()};

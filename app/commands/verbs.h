@@ -31,6 +31,7 @@ Verb simulate_body_verb();
 Verb simulate_board_verb();
 Verb experiment_camera_verb();
 Verb experiment_body_verb();
+Verb experiment_targets_verb();
 Verb experiment_calibration_verb();
 Verb evaluate_verb();
 Verb view_verb();

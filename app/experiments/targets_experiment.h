@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "app/experiments/experiment_section.h"
+
+namespace alidade {
+
+// The UAV paper's experiments and what goes beyond them, on the scenes of its page. ExperimentContext::runs is the
+// number of runs of each cell.
+
+}  // namespace alidade
