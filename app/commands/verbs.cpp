@@ -21,6 +21,7 @@ std::vector<Verb> all_verbs() {
           convert_verb(),
           simulate_camera_verb(),
           simulate_body_verb(),
+          simulate_targets_verb(),
           simulate_board_verb(),
           experiment_camera_verb(),
           experiment_body_verb(),

@@ -28,6 +28,7 @@ Verb undistort_verb();
 Verb convert_verb();
 Verb simulate_camera_verb();
 Verb simulate_body_verb();
+Verb simulate_targets_verb();
 Verb simulate_board_verb();
 Verb experiment_camera_verb();
 Verb experiment_body_verb();
