@@ -25,8 +25,8 @@ struct MotionFitOptions {
   /// their full weight. 2.5 keeps 95 % of the precision where nothing is wrong.
   double robust_scale = 0.0;
   /// A fit whose range is less sure than this share of itself (1 sigma, from the nearest receiver) is not determined:
-  /// there the bearings are far from linear in it, and its covariance means nothing.
-  double greatest_range_sigma = 0.2;
+  /// there the bearings are far from linear in it, and its covariance means little.
+  double greatest_range_sigma = 0.1;
 };
 
 /// Throws std::invalid_argument naming field, value and bound.
@@ -55,7 +55,7 @@ struct MotionAnswer {
 
 /// The most probable motion of one target from bearings by any number of receivers at any times: a linear start, its
 /// weights by range, then Gauss–Newton on the bearings' own errors; where these are small, as precise as any unbiased
-/// estimate can be. The bearings need no order. Allocates nothing.
+/// estimate can be. The bearings need no order.
 /// Throws std::invalid_argument for a direction that is not of unit length, a covariance that is not positive definite,
 /// and for a value that is not finite.
 /// Source: UAV paper page, "Where we go past it", 1; the paper's eqs. 4 and 5 for the motion between the bearings.
