@@ -8,6 +8,7 @@ std::vector<Verb> all_verbs() {
           record_verb(),
           track_camera_verb(),
           track_body_verb(),
+          track_targets_verb(),
           calibrate_board_verb(),
           guide_verb(),
           calibrate_camera_verb(),

@@ -15,6 +15,7 @@ Verb devices_verb();
 Verb record_verb();
 Verb track_camera_verb();
 Verb track_body_verb();
+Verb track_targets_verb();
 Verb calibrate_board_verb();
 Verb calibrate_camera_verb();
 Verb guide_verb();
