@@ -19,7 +19,9 @@ struct WindowOptions {
   double false_bearings_per_sr = 10.0;  ///< their mean number in a scan, per steradian; 10: one in a cone of 20°
   /// Targets that there may be before anything is seen, per cubic metre: 1e-5 is one in a cube of 46 m.
   double target_density_m3 = 1e-5;
-  double top_speed_m_s = 60.0;
+  /// That a target comes or goes within the window, instead of being missed there.
+  double appearance_probability = 0.01;
+  double top_speed_m_s = 70.0;
   double greatest_range_m = 1e4;  ///< of a target from a receiver
   /// How far off (χ² of two degrees of freedom) a bearing of a target may be: 16 loses one in 3000.
   double gate_chi2 = 16.0;
