@@ -135,7 +135,9 @@ void blend(TargetTrack& track, const BearingScan& scan, const Eigen::RowVectorXd
 ScanOutcome take_jointly(std::vector<TargetTrack> tracks, const BearingScan& scan, const MatrixXd& log_ratio,
                          const TargetTrackerOptions& options) {
   const Eigen::VectorXd miss = Eigen::VectorXd::Constant(log_ratio.rows(), 1.0 - options.detection_probability);
-  const MatrixXd probability = joint_assignment(log_ratio.array().exp(), miss);
+  // Eigen's own exp of minus infinity is not 0
+  const MatrixXd ratio = log_ratio.unaryExpr([](double log) { return std::exp(log); });
+  const MatrixXd probability = joint_assignment(ratio, miss);
   // so many tracks and bearings in one heap that all ways cannot be counted
   if ((probability.rowwise().sum().array() < 0.5).any())
     return take_nearest(std::move(tracks), scan, log_ratio, options);
