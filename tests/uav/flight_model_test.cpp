@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/tangent.h"
-#include "tests/uav/simulated_flight.h"
+#include "tests/support/simulated_flight.h"
 
 namespace alidade {
 namespace {

@@ -8,7 +8,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-#include "tests/uav/simulated_flight.h"
+#include "tests/support/simulated_flight.h"
 
 namespace alidade {
 namespace {

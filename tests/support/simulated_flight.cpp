@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/uav/simulated_flight.h"
+#include "tests/support/simulated_flight.h"
 
 #include <algorithm>
 #include <cmath>
