@@ -20,6 +20,7 @@ void validate(const TargetTrackerOptions& o) {
   require(o.false_bearings_per_sr > 0.0, "false_bearings_per_sr", o.false_bearings_per_sr, "> 0 /sr");
   require(o.gate_chi2 > 0.0, "gate_chi2", o.gate_chi2, "> 0");
   require(o.top_speed_m_s > 0.0, "top_speed_m_s", o.top_speed_m_s, "> 0 m/s");
+  require(o.acceleration_sigma_m_s2 > 0.0, "acceleration_sigma_m_s2", o.acceleration_sigma_m_s2, "> 0 m/s^2");
   require(o.window_periods >= 1.0, "window_periods", o.window_periods, ">= 1");
   require(o.least_sightings >= 3, "least_sightings", o.least_sightings, ">= 3");
   require(o.confirm_log_ratio >= o.start_log_ratio, "confirm_log_ratio", o.confirm_log_ratio, ">= start_log_ratio");

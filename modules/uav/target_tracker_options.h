@@ -24,7 +24,9 @@ struct TargetTrackerOptions {
   double false_bearings_per_sr = 10.0;  ///< their mean number in a look, per steradian; 10: one in a cone of 20°
   double gate_chi2 = 16.0;              ///< of 2 degrees of freedom; 16 loses one bearing in 3000
 
-  double top_speed_m_s = 60.0;       ///< of targets that appear
+  double top_speed_m_s = 60.0;  ///< of targets that appear
+  /// Of each coordinate of an acceleration that is estimated (jerk_density > 0), before anything is seen.
+  double acceleration_sigma_m_s2 = 3.0;
   double window_periods = 3.0;       ///< bearings without a track are kept so long for new tracks to start from
   int least_sightings = 5;           ///< of a new track: 4 of its equations then test the 6 unknowns
   double start_log_ratio = 12.0;     ///< ln of how much more probable a new track is than false bearings
