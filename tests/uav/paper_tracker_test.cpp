@@ -17,7 +17,7 @@ namespace {
 TargetSceneOptions slow_scene(int targets, unsigned seed) {
   TargetSceneOptions options = paper_table_scene(targets, {0.0, 0.1, 0.2}, seed);
   options.velocity_sigma_m_s = 6.0;
-  options.row_spacing_m = 12.0;
+  options.row_spacing_m = 60.0;  // lines of sight to two targets pass each other beyond the pair threshold
   return options;
 }
 
@@ -140,7 +140,7 @@ TEST(PaperTracker, SaysHowUnsureItIsOfLinesOfSightInOnePlane) {
   options.elevation_rad = 0.0;
   options.velocity_sigma_m_s = 0.1;
   for (const PaperTarget& target : locate_paper_targets(bearings_of(make_target_scene(options)), {})) {
-    EXPECT_GT(target.state.covariance.topLeftCorner<6, 6>().trace(), 100.0);
+    EXPECT_GT(target.state.covariance.trace(), 100.0);
   }
 }
 
