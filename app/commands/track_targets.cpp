@@ -9,6 +9,7 @@
 #include "app/live_messages.h"
 #include "app/live_output.h"
 #include "app/reading_source.h"
+#include "app/targets/placement_plan.h"
 #include "app/targets/sky_source.h"
 #include "app/targets/target_pipeline.h"
 #include "app/targets/target_report.h"
@@ -28,12 +29,15 @@ class TrackTargetsCommand : public Command {
                      "CSV of pixels, or of azimuth and elevation, by each receiver's own clock; -: standard input");
     flags.add_option("--truth", truth_, "true paths, to draw beside the tracks: truth.csv of 'simulate targets'");
     flags.add_option("--stream", stream_, kStreamHelp);
+    flags.add_flag("--plan", is_plan_, "no observations: how well these receivers can locate a target, over a volume");
     bind(options_, track_);
+    bind(options_, plan_);
   }
 
   ExitCode run(const RunContext& context) override {
     const std::vector<Receiver> receivers = read_receivers_of(receivers_);
     check(receivers);
+    if (is_plan_) return plan(context, receivers);
     const std::vector<TargetRow> truth = truth_.empty() ? std::vector<TargetRow>() : read_target_rows(truth_);
     const std::string source = observations_.empty() ? receivers_ : observations_;
     std::optional<LiveOutput> live;  // before standard input has said anything
@@ -74,6 +78,22 @@ class TrackTargetsCommand : public Command {
         receivers_, 0,
         fmt::format("holds {} receiver{}, wanted are {}", receivers.size(), receivers.size() == 1 ? "" : "s", least),
         "a place in space takes lines of sight from two places; add a receiver");
+  }
+
+  ExitCode plan(const RunContext& context, const std::vector<Receiver>& receivers) const {
+    const PlacementMap map = map_placement(receivers, placement_of(plan_));
+    ResultDirectory directory(context.output, "track targets");
+    write_plan(map, receivers, directory, context.arguments, options_.to_yaml());
+    const nlohmann::json summary = summary_of(map);
+    directory.commit(summary);
+    context.publish(summary);
+    context.tell(summary.contains("median_rms_m")
+                     ? fmt::format("bound of a position: median {:.3g} m, best {:.3g} m, worst {:.3g} m",
+                                   summary["median_rms_m"].get<double>(), summary["best_rms_m"].get<double>(),
+                                   summary["worst_rms_m"].get<double>())
+                     : "a target is located nowhere in the volume");
+    context.tell(fmt::format("written to {}", context.output.string()));
+    return summary.contains("median_rms_m") ? ExitCode::Success : ExitCode::NoAnswer;
   }
 
   // Until the observations end, the user stops it, or a line is wrong: what was wrong, then.
@@ -134,7 +154,9 @@ class TrackTargetsCommand : public Command {
   }
 
   std::string receivers_, observations_, truth_, stream_;
+  bool is_plan_ = false;
   TargetTrackOptions track_;
+  PlanOptions plan_;
 };
 
 }  // namespace
@@ -142,7 +164,8 @@ class TrackTargetsCommand : public Command {
 Verb track_targets_verb() {
   return {"track targets", "where flying objects were, from receivers that look at different times",
           "alidade track targets receivers.yaml observations.csv -o track\n"
-          "alidade track targets flight/ --truth flight/truth.csv --method paper-proposed -o paper",
+          "alidade track targets flight/ --truth flight/truth.csv --method paper-proposed -o paper\n"
+          "alidade track targets receivers.yaml --plan --plan-greatest-m 200,200,100 -o plan",
           OutputUse::Required, make_command<TrackTargetsCommand>};
 }
 

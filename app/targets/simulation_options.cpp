@@ -1,36 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/targets/simulation_options.h"
 
-#include <charconv>
 #include <stdexcept>
-#include <string_view>
-#include <vector>
 
 #include <fmt/format.h>
 
-#include "io/text_lines.h"
+#include "app/targets/number_list.h"
 
 namespace alidade {
-namespace {
-
-std::vector<double> parse_list(std::string_view text) {
-  std::vector<double> numbers;
-  while (true) {
-    const std::size_t comma = text.find(',');
-    const std::string_view word = trim(text.substr(0, comma));
-    double number = 0.0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-    if (error != std::errc() || end != word.data() + word.size()) {
-      throw std::invalid_argument(fmt::format("delays_s must be numbers with commas between, got '{}'", word));
-    }
-    numbers.push_back(number);
-    if (comma == std::string_view::npos) return numbers;
-    text.remove_prefix(comma + 1);
-  }
-}
-
-}  // namespace
-
 void bind(OptionFields& fields, TargetSimulationOptions& options) {
   TargetSceneOptions& scene = options.scene;
   fields.add("targets", scene.targets, "", "number of flying objects");
@@ -69,7 +46,7 @@ void bind(OptionFields& fields, TargetSimulationOptions& options) {
 
 TargetSceneOptions scene_of(const TargetSimulationOptions& options) {
   TargetSceneOptions scene = options.scene;
-  scene.delays_s = parse_list(options.delays_s);
+  scene.delays_s = parse_numbers("delays_s", options.delays_s);
   return scene;
 }
 
