@@ -9,9 +9,9 @@ namespace alidade {
 
 /// Options of BackgroundModel.
 struct BackgroundOptions {
-  /// Frames over which it forgets: so short that clouds that drift by 0.2 px per frame do not change meanwhile (found by
-  /// trial: 20 lose half of the faint dots before clouds, 6 to 10 do alike). What flies slowly is seen none the less,
-  /// once it is known to be an object.
+  /// Frames over which it forgets: so short that clouds that drift by 0.2 px per frame do not change meanwhile (found
+  /// by trial: 20 lose half of the faint dots before clouds, 6 to 10 do alike). What flies slowly is seen none the
+  /// less, once it is known to be an object.
   double memory_frames = 8.0;
   double learning_at_objects = 0.1;  ///< how much slower pixels of objects are learnt, so that they leave no trail
 };

@@ -12,7 +12,8 @@ namespace alidade {
 
 /// Options of ShortTracks.
 struct ShortTrackOptions {
-  int least_frames = 3;  ///< in which an object was seen before it counts
+  double least_response = 3.5;  ///< of a sighting to begin a track, or to go on with one that does not count yet
+  int least_frames = 3;         ///< in which an object was seen before it counts
   /// Root of the sum of the squared responses of an object's sightings, before it counts: three of 5.2, or five of 4.
   /// Noise that passes a threshold of 3.5 needs to meet itself six times in a row for that.
   double least_evidence = 9.0;
