@@ -17,7 +17,10 @@ struct Part {
   ExperimentSection (*run)(const ExperimentContext&);
 };
 
-const std::vector<Part> kParts{};
+const std::vector<Part> kParts{
+    {"tables", targets_tables},
+    {"formulas", targets_formulas},
+};
 
 std::vector<std::string> part_names() {
   std::vector<std::string> names;

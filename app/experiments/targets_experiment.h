@@ -8,4 +8,11 @@ namespace alidade {
 // The UAV paper's experiments and what goes beyond them, on the scenes of its page. ExperimentContext::runs is the
 // number of runs of each cell.
 
+/// The paper's Tables 1 and 2: printed, re-created on the page, re-created here in both readings of the noise; the
+/// stamped batch on the same bearings, and the bound.
+ExperimentSection targets_tables(const ExperimentContext& context);
+
+/// The paper's formulas 12 and 13 against Monte Carlo covariances, under their own noise and under that of bearings.
+ExperimentSection targets_formulas(const ExperimentContext& context);
+
 }  // namespace alidade
