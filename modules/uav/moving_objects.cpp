@@ -41,8 +41,8 @@ std::vector<cv::Rect> areas_of(const std::vector<DotPeak>& peaks) {
   return areas;
 }
 
-std::vector<Sighting> sightings_of(const std::vector<DotPeak>& peaks) {
-  std::vector<Sighting> sightings;
+std::vector<SeenDot> sightings_of(const std::vector<DotPeak>& peaks) {
+  std::vector<SeenDot> sightings;
   for (const DotPeak& peak : peaks) sightings.push_back({{peak.summit.x, peak.summit.y}, peak.response});
   return sightings;
 }

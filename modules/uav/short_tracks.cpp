@@ -35,7 +35,7 @@ ShortTracks::ShortTracks(const ShortTrackOptions& options) : options_(options) {
   validate(options);
 }
 
-bool ShortTracks::reaches(const Track& track, const Sighting& sighting, double since_s) const {
+bool ShortTracks::reaches(const Track& track, const SeenDot& sighting, double since_s) const {
   if (sighting.response * track.response < 0.0) return false;
   if (!track.is_confirmed && std::abs(sighting.response) < options_.least_response) return false;
   const double distance_px = (sighting.pixel - track.last - since_s * track.velocity_px_s).norm();
@@ -43,7 +43,7 @@ bool ShortTracks::reaches(const Track& track, const Sighting& sighting, double s
   return distance_px <= options_.gate_px * (1.0 + track.missed);
 }
 
-void ShortTracks::extend(Track& track, const Sighting& sighting, Timestamp time) const {
+void ShortTracks::extend(Track& track, const SeenDot& sighting, Timestamp time) const {
   constexpr double kGain = 0.5;  // of the velocity by one more sighting
   const double since_s = to_seconds(time - track.time);
   const Eigen::Vector2d velocity = (sighting.pixel - track.last) / since_s;
@@ -59,7 +59,7 @@ void ShortTracks::extend(Track& track, const Sighting& sighting, Timestamp time)
   track.is_confirmed = track.is_confirmed || (track.seen >= options_.least_frames && is_evident && has_moved);
 }
 
-std::vector<bool> ShortTracks::confirm(std::span<const Sighting> sightings, Timestamp time) {
+std::vector<bool> ShortTracks::confirm(std::span<const SeenDot> sightings, Timestamp time) {
   std::vector<Link> links;
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     const double since_s = to_seconds(time - tracks_[i].time);
