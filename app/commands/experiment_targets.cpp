@@ -20,6 +20,7 @@ struct Part {
 const std::vector<Part> kParts{
     {"tables", targets_tables},
     {"formulas", targets_formulas},
+    {"video", targets_video},
 };
 
 std::vector<std::string> part_names() {

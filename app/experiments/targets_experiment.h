@@ -15,4 +15,8 @@ ExperimentSection targets_tables(const ExperimentContext& context);
 /// The paper's formulas 12 and 13 against Monte Carlo covariances, under their own noise and under that of bearings.
 ExperimentSection targets_formulas(const ExperimentContext& context);
 
+/// From rendered videos: detection of small moving objects by size and SNR, OpenCV's MOG2 beside it, and the chain from
+/// pixels to tracks. ExperimentContext::runs is the number of frames of each cell, in videos of 150.
+ExperimentSection targets_video(const ExperimentContext& context);
+
 }  // namespace alidade

@@ -93,14 +93,18 @@ std::optional<FittedDot> fit_dot(const cv::Mat& residual, const DotPeak& peak, c
                       m[3] <= options.greatest_sigma_px && m[2] * peak.response > 0.0 &&
                       std::abs(m[2]) >= options.least_height * noise;
   if (!is_dot) return std::nullopt;
-  const Matrix7d covariance = noise * noise * normal.A.ldlt().solve(Matrix7d::Identity());
+  const double misfit2 = normal.error2 / std::max(1, area.area() - static_cast<int>(m.size()));
+  const Matrix7d covariance = std::max(noise * noise, misfit2) * normal.A.ldlt().solve(Matrix7d::Identity());
   return FittedDot{Eigen::Vector2d(peak.pixel.x, peak.pixel.y) + m.head<2>(), covariance.topLeftCorner<2, 2>(), m[2],
                    m[3], noise};
 }
 
 double disc_diameter_px(double sigma_px, double blur_px) {
   constexpr double kPixel2 = 1.0 / 12.0;  // variance of a point's place within its pixel
-  return 4.0 * std::sqrt(std::max(0.0, sigma_px * sigma_px - kPixel2 - blur_px * blur_px));
+  // A disc's variance is d²/16; the Gaussian that fits it best by least squares has up to d²/10 (e^q = 1 + 2q, q =
+  // d²/8s²).
+  constexpr double kDisc = 11.0;
+  return std::sqrt(kDisc * std::max(0.0, sigma_px * sigma_px - kPixel2 - blur_px * blur_px));
 }
 
 }  // namespace alidade
