@@ -59,7 +59,8 @@ class TrackTargetsCommand : public Command {
     if (fault) run.fault = fault->what();
     add_warnings(pipeline, run);
     if (live) live->end(end_message({run.bearings, static_cast<std::int64_t>(run.targets.size()), run.interrupted}));
-    write_receivers(directory.path("receivers.yaml"), receivers);
+    const std::vector<Receiver>& found = pipeline.receivers_in_operation();
+    write_receivers(directory.path("receivers.yaml"), found.empty() ? receivers : found);
     write_target_report(run, truth, directory, context.arguments, options_.to_yaml());
     for (const std::string& warning : run.warnings) context.warn(warning);
     const nlohmann::json summary = summary_of(run);

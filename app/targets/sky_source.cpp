@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/find_by_id.h"
+#include "datasets/flight_recording.h"
 #include "io/receiver_file.h"
 #include "io/receiver_reading_file.h"
 
@@ -39,6 +40,11 @@ class RecordedSky : public SkySource {
   std::size_t next_ = 0;
 };
 
+// Of the form that datasets/flight_recording.h reads.
+bool is_flight(const std::string& source) {
+  return fs::is_directory(source) && fs::exists(fs::path(source) / "groundtruth.csv");
+}
+
 class LiveSky : public SkySource {
  public:
   LiveSky(const std::string& source, std::span<const Receiver> receivers, std::stop_token stop)
@@ -68,6 +74,7 @@ class LiveSky : public SkySource {
 }  // namespace
 
 std::vector<Receiver> read_receivers_of(const std::string& source) {
+  if (is_flight(source)) return read_flight(source).receivers;
   const fs::path path = fs::is_directory(source) ? fs::path(source) / "receivers.yaml" : fs::path(source);
   return read_receivers(path);
 }
@@ -75,6 +82,10 @@ std::vector<Receiver> read_receivers_of(const std::string& source) {
 std::unique_ptr<SkySource> open_sky(const std::string& source, std::span<const Receiver> receivers,
                                     std::stop_token stop) {
   if (source == "-") return std::make_unique<LiveSky>(source, receivers, std::move(stop));
+  if (is_flight(source)) {
+    const FlightRecording flight = read_flight(source);
+    return std::make_unique<RecordedSky>(receivers, flight.readings, std::move(stop));
+  }
   const fs::path path = fs::is_directory(source) ? fs::path(source) / "observations.csv" : fs::path(source);
   return std::make_unique<RecordedSky>(receivers, read_receiver_readings(path, receivers), std::move(stop));
 }

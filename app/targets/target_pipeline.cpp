@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "uav/receiver_clocks.h"
+
 namespace alidade {
 namespace {
 
@@ -37,6 +39,7 @@ void validate(const TargetTrackOptions& options) {
     throw std::invalid_argument(fmt::format("output_s must be > 0 s, got {}", options.output_s));
   }
   validate(options.ours);
+  validate(options.flight);
   validate(paper_options(options));
 }
 
@@ -44,9 +47,11 @@ void bind(OptionFields& fields, TargetTrackOptions& options) {
   TargetTrackerOptions& ours = options.ours;
   fields.add_choice("method", options.method,
                     {{"ours", TargetMethod::Ours},
+                     {"flight", TargetMethod::Flight},
                      {"paper-alternative", TargetMethod::PaperAlternative},
                      {"paper-proposed", TargetMethod::PaperProposed}},
-                    "a recursive tracker; the UAV paper's algorithm of two receivers; its own of three");
+                    "a recursive tracker; one target smoothed over its whole flight, with the receivers' clocks; the "
+                    "UAV paper's algorithm of two receivers; its own of three");
   fields.add("output_s", options.output_s, "s", "from one estimate to the next");
   fields.add("period_s", ours.period_s, "s", "in which each receiver looks at each target about once");
   fields.add("scan_s", ours.scan_s, "s",
@@ -68,6 +73,11 @@ void bind(OptionFields& fields, TargetTrackOptions& options) {
   fields.add("patience_periods", ours.patience_periods, "", "a target that nobody has seen so long is given up");
   fields.add("temperature_sigma_k", ours.temperature_sigma_k, "K",
              "of a reading about its target's; above 0 temperatures help to tell targets apart");
+  fields.add("flight.step_s", options.flight.step_s, "s", "between the states of a flight");
+  fields.add("flight.acceleration_m_s2", options.flight.acceleration_m_s2, "m/s2", "of each coordinate, typically");
+  fields.add("flight.acceleration_time_s", options.flight.acceleration_time_s, "s", "how long it goes on as it does");
+  fields.add("flight.turn_rad", options.flight.turn_rad, "rad",
+             "how far directions of a receiver without covariance are off");
   fields.add("paper.periods", options.paper.periods, "", "of a window of the paper's method");
   fields.add("paper.pair_threshold_m", options.paper.pair_threshold_m, "m", "how far two lines of sight may pass");
   fields.add("paper.alternative_group_m", options.paper.alternative_group_m, "m", "of a continuation from its group");
@@ -82,6 +92,8 @@ std::string describe(const TargetTrackOptions& options) {
       return "the UAV paper's alternative algorithm (two receivers)";
     case TargetMethod::PaperProposed:
       return "the UAV paper's proposed algorithm (three receivers)";
+    case TargetMethod::Flight:
+      return "one target, smoothed over the whole flight, with the receivers' clocks and directions";
     case TargetMethod::Ours:
       break;
   }
@@ -127,6 +139,7 @@ void TargetPipeline::add(const Bearing& bearing) {
 }
 
 void TargetPipeline::finish() {
+  if (options_.method == TargetMethod::Flight) return write_flight();
   if (options_.method != TargetMethod::Ours) {
     for (const PaperTarget& target : track_paper_targets(bearings_, paper_options(options_))) {
       record_.add(row_of(target));
@@ -136,6 +149,26 @@ void TargetPipeline::finish() {
   if (!next_output_) return;
   if (live_) tell_live();
   write_until(tracker_.now());
+}
+
+void TargetPipeline::write_flight() {
+  const std::vector<Receiver>& receivers = record_.run().receivers;
+  const auto path = estimate_flight(receivers, bearings_, options_.flight);
+  if (!path) return;
+  const Timestamp begin = path->steps.front().state.time, end = path->steps.back().state.time;
+  for (Timestamp t = begin; t <= end; t += from_seconds(options_.output_s)) {
+    const FlightStep* step = step_at(*path, t);
+    if (!step || step->seen_by < 2) continue;
+    TargetRow row = row_of(*state_at(*path, t));
+    row.target = 1;
+    row.state = "confirmed";
+    row.sightings = step->seen_by;
+    record_.add(row);
+  }
+  receivers_in_operation_ = receivers;
+  if (path->steps.size() < 2) return;
+  const std::vector<ReceiverClock> clocks = clocks_in_operation(receivers, *path, begin, end);
+  for (std::size_t i = 0; i < clocks.size(); ++i) receivers_in_operation_[i].clock = clocks[i];
 }
 
 void TargetPipeline::write_until(Timestamp time) {

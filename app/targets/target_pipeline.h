@@ -9,17 +9,24 @@
 
 #include "app/options_yaml.h"
 #include "app/targets/target_record.h"
+#include "uav/flight_path.h"
 #include "uav/paper_tracker.h"
 #include "uav/target_tracker.h"
 
 namespace alidade {
 
-enum class TargetMethod { Ours, PaperAlternative, PaperProposed };
+enum class TargetMethod {
+  Ours,    ///< any number of targets, as bearings come
+  Flight,  ///< one target, seen all the time: smoothed over the whole flight, receivers' clocks found with it
+  PaperAlternative,
+  PaperProposed
+};
 
 struct TargetTrackOptions {
   TargetMethod method = TargetMethod::Ours;
   double output_s = 1.0;  ///< from one estimate to the next
   TargetTrackerOptions ours;
+  FlightPathOptions flight;
   PaperOptions paper;
 };
 
@@ -37,7 +44,7 @@ TargetRow row_of(const TargetEstimate& estimate);
 TargetRow row_of(const PaperTarget& target);
 
 /// From bearings to a record of targets. Ours: in memory that does not grow, estimates come out once nothing older than
-/// the tracker's lag can change them; the paper's, which knows windows of periods alone, at the end.
+/// the tracker's lag can change them; a flight, and the paper's, which knows windows of periods alone, at the end.
 class TargetPipeline {
  public:
   /// Called with the newest estimates of all targets at every output time, before late bearings may change them; an
@@ -52,10 +59,14 @@ class TargetPipeline {
   /// What is not written down yet. Once, and last.
   void finish();
 
+  /// The receivers with their clocks as a whole flight showed them to be; of the other methods empty.
+  const std::vector<Receiver>& receivers_in_operation() const { return receivers_in_operation_; }
+
   /// Bearings that came too late to be of use.
   std::size_t left_out() const { return tracker_.left_out(); }
 
  private:
+  void write_flight();
   void write_until(Timestamp time);
   void tell_live();
 
@@ -63,7 +74,8 @@ class TargetPipeline {
   TargetRecord& record_;
   LiveSink live_;
   TargetTracker tracker_;
-  std::vector<Bearing> bearings_;  // of the paper's method
+  std::vector<Bearing> bearings_;  // of the methods that answer at the end
+  std::vector<Receiver> receivers_in_operation_;
   std::optional<Timestamp> next_output_, next_live_;
 };
 
