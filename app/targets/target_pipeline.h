@@ -24,7 +24,9 @@ enum class TargetMethod {
 
 struct TargetTrackOptions {
   TargetMethod method = TargetMethod::Ours;
-  double output_s = 1.0;  ///< from one estimate to the next
+  double output_s = 0.0;  ///< from one estimate to the next; 0: a period, 0.2 s at least
+  double period_s = 0.0;  ///< TargetTrackerOptions::period_s; 0: a frame of the slowest camera, else 1 s
+  double scan_s = 0.0;    ///< TargetTrackerOptions::scan_s; 0: 0.4 of a camera's frame, else 0.03 s
   TargetTrackerOptions ours;
   FlightPathOptions flight;
   PaperOptions paper;
@@ -35,6 +37,10 @@ void validate(const TargetTrackOptions& options);
 
 /// Binds them to flags and keys of --config. `options` must outlive `fields`.
 void bind(OptionFields& fields, TargetTrackOptions& options);
+
+/// The options with nothing left open. Of cameras, whose frames come fast, new tracks take 9 sightings out of 10 frames
+/// at least, and are given up after 20 frames at the earliest.
+TargetTrackOptions settled(TargetTrackOptions options, std::optional<double> frame_interval_s);
 
 /// One line of words for the report: how targets are found.
 std::string describe(const TargetTrackOptions& options);
@@ -51,7 +57,7 @@ class TargetPipeline {
   /// empty function is allowed.
   using LiveSink = std::function<void(Timestamp time, const std::vector<TargetEstimate>& targets)>;
 
-  /// Refers to the record.
+  /// Refers to the record. `options`: settled.
   TargetPipeline(const TargetTrackOptions& options, TargetRecord& record, LiveSink live);
 
   void add(const Bearing& bearing);
