@@ -22,7 +22,7 @@ struct TargetTrackerOptions {
 
   double detection_probability = 0.9;   ///< of a target in a look
   double false_bearings_per_sr = 10.0;  ///< their mean number in a look, per steradian; 10: one in a cone of 20°
-  double gate_chi2 = 16.0;              ///< of 2 degrees of freedom; 16 loses one bearing in 3000
+  double gate_chi2 = 20.0;              ///< of 2 degrees of freedom; 20 loses one bearing in 22,000
 
   double top_speed_m_s = 60.0;  ///< of targets that appear
   /// Of each coordinate of an acceleration that is estimated (jerk_density > 0), before anything is seen.
