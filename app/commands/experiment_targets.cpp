@@ -17,7 +17,7 @@ struct Part {
   ExperimentSection (*run)(const ExperimentContext&);
 };
 
-const std::vector<Part> kParts{};
+const std::vector<Part> kParts{{"tracker", targets_tracker}};
 
 std::vector<std::string> part_names() {
   std::vector<std::string> names;
