@@ -20,6 +20,7 @@ struct Part {
 const std::vector<Part> kParts{
     {"tables", targets_tables},
     {"formulas", targets_formulas},
+    {"tracker", targets_tracker},
     {"video", targets_video},
 };
 

@@ -19,4 +19,8 @@ ExperimentSection targets_formulas(const ExperimentContext& context);
 /// pixels to tracks. ExperimentContext::runs is the number of frames of each cell, in videos of 150.
 ExperimentSection targets_video(const ExperimentContext& context);
 
+/// The recursive tracker: against the same filter with true association and against the bound; clutter, detection,
+/// spacing, receivers, order of arrival, ways of scanning.
+ExperimentSection targets_tracker(const ExperimentContext& context);
+
 }  // namespace alidade
