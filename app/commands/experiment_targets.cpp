@@ -18,8 +18,8 @@ struct Part {
 };
 
 const std::vector<Part> kParts{
-    {"tables", targets_tables},
-    {"formulas", targets_formulas},
+    {"tables", targets_tables}, {"formulas", targets_formulas},   {"batch", targets_batch},
+    {"window", targets_window}, {"placement", targets_placement},
 };
 
 std::vector<std::string> part_names() {

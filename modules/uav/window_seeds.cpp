@@ -16,8 +16,9 @@ namespace {
 constexpr std::size_t kMostScansAsked = 30;   // about a guess: enough to tell
 constexpr std::size_t kPicksPerReceiver = 6;  // scans from which guesses start, spread over the window
 constexpr std::size_t kMostTriples = 150, kMostPairs = 60;
-constexpr double kWellSeen = 0.4;           // of what a target's bearings usually gain
-constexpr std::size_t kGrownPerAnchor = 3;  // the best guesses through one bearing
+constexpr std::size_t kMostPairsTried = 1'000'000;  // a tenth of a second, in the thickest of false bearings
+constexpr double kWellSeen = 0.4;                   // of what a target's bearings usually gain
+constexpr std::size_t kGrownPerAnchor = 3;          // the best guesses through one bearing
 
 struct Seed {
   Support support;
@@ -155,7 +156,8 @@ class Search {
     for_each_free(scans[0], [&](std::size_t a) {
       std::vector<Seed> seeds;
       for_each_free(scans[1], [&](std::size_t b) {
-        if (!may_meet(window_, a, b)) return;
+        if (pairs_tried_ > kMostPairsTried || !may_meet(window_, a, b)) return;
+        pairs_tried_ += later.size();
         for (const auto& [c, d] : later) {
           if (is_free_[c] && is_free_[d]) consider(guess_of_pairs(window_, {a, b, c, d}), {a, b, c, d}, rest, seeds);
         }
@@ -227,6 +229,7 @@ class Search {
   std::vector<char>& is_free_;
   SupportSearch support_;
   double least_log_ratio_;
+  std::size_t pairs_tried_ = 0;
   std::vector<WindowTrack> tracks_;
 };
 
