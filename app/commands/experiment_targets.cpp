@@ -18,9 +18,8 @@ struct Part {
 };
 
 const std::vector<Part> kParts{
-    {"tables", targets_tables},
-    {"formulas", targets_formulas},
-    {"tracker", targets_tracker},
+    {"tables", targets_tables}, {"formulas", targets_formulas},   {"batch", targets_batch},
+    {"window", targets_window}, {"placement", targets_placement}, {"tracker", targets_tracker},
     {"video", targets_video},
 };
 
