@@ -56,6 +56,7 @@ struct TargetPath {
   int target = 0;  ///< 0, 1, ...
   Timestamp origin{}, birth{}, death{};
   Eigen::Vector3d p0_world, v_world, a_world;
+  double temperature_k = 290.0;
 };
 
 /// Where the target of a path is (m), and how fast (m/s); at any time.

@@ -34,6 +34,8 @@ void bind(OptionFields& fields, TargetSimulationOptions& options) {
   fields.add("detection_probability", scene.detection_probability, "", "of each target in each scan");
   fields.add("false_bearings", scene.false_bearings, "", "mean number per scan and receiver");
   fields.add("cone_rad", scene.cone_rad, "rad", "full angle of the cone in which they lie");
+  fields.add("temperature_sigma_k", scene.temperature_sigma_k, "K",
+             "error of the temperatures that all receivers but the first read; 0: none is read");
   fields.add("comes_and_goes", scene.comes_and_goes, "", "some appear later or leave earlier");
   fields.add("truth_rate_hz", options.truth_rate_hz, "Hz", "rows of the true paths per second and target");
   fields.add_check([&options] {

@@ -179,5 +179,27 @@ TEST(TargetSceneOptions, AreRefusedByName) {
   EXPECT_THROW(make_target_scene(options), std::invalid_argument);
 }
 
+TEST(TargetScene, ReadsTemperaturesWithoutChangingTheBearings) {
+  TargetSceneOptions options;
+  options.false_bearings = 1.0;
+  const TargetScene without = make_target_scene(options);
+  options.temperature_sigma_k = 2.0;
+  const TargetScene with = make_target_scene(options);
+  ASSERT_EQ(with.readings.size(), without.readings.size());
+  double squares = 0.0;
+  int count = 0;
+  for (std::size_t i = 0; i < with.readings.size(); ++i) {
+    const ReceiverReading& reading = with.readings[i];
+    EXPECT_EQ(reading.value, without.readings[i].value);
+    EXPECT_EQ(reading.temperature_k.has_value(), reading.receiver > 0);
+    if (!reading.temperature_k || reading.target < 0) continue;
+    const double error = *reading.temperature_k - with.paths[static_cast<std::size_t>(reading.target)].temperature_k;
+    squares += error * error;
+    ++count;
+  }
+  ASSERT_GE(count, 20);
+  EXPECT_NEAR(std::sqrt(squares / count), 2.0, 1.0);
+}
+
 }  // namespace
 }  // namespace alidade
