@@ -17,7 +17,10 @@ struct Part {
   ExperimentSection (*run)(const ExperimentContext&);
 };
 
-const std::vector<Part> kParts{{"tracker", targets_tracker}};
+const std::vector<Part> kParts{
+    {"tables", targets_tables}, {"formulas", targets_formulas}, {"tracker", targets_tracker},
+    {"cue", targets_cue},       {"video", targets_video},
+};
 
 std::vector<std::string> part_names() {
   std::vector<std::string> names;

@@ -31,11 +31,16 @@ std::optional<Direction> direction_of_pixel(const Camera& camera, const Eigen::V
   return Direction{*d, basis * J_pixel_tangent.inverse()};
 }
 
-Direction direction_of_finder(const Eigen::Vector2d& angles) {
+// Which way elevation goes along y.
+double sign_of_y(FinderAxes axes) {
+  return axes == FinderAxes::YUp ? 1.0 : -1.0;
+}
+
+Direction direction_of_finder(const Eigen::Vector2d& angles, FinderAxes axes) {
   const double ca = std::cos(angles[0]), sa = std::sin(angles[0]), ce = std::cos(angles[1]), se = std::sin(angles[1]);
-  Direction direction{direction_of_angles(angles), {}};
+  Direction direction{direction_of_angles(angles, axes), {}};
   direction.J_direction_value << ca * ce, -sa * se,  //
-      0.0, -ce,                                      //
+      0.0, sign_of_y(axes) * ce,                     //
       -sa * ce, -ca * se;
   return direction;
 }
@@ -68,19 +73,21 @@ std::optional<std::string> find_fault(const Receiver& receiver) {
   return std::nullopt;
 }
 
-Eigen::Vector3d direction_of_angles(const Eigen::Vector2d& azimuth_elevation) {
+Eigen::Vector3d direction_of_angles(const Eigen::Vector2d& azimuth_elevation, FinderAxes axes) {
   const double azimuth = azimuth_elevation[0], elevation = azimuth_elevation[1];
-  return {std::cos(elevation) * std::sin(azimuth), -std::sin(elevation), std::cos(elevation) * std::cos(azimuth)};
+  return {std::cos(elevation) * std::sin(azimuth), sign_of_y(axes) * std::sin(elevation),
+          std::cos(elevation) * std::cos(azimuth)};
 }
 
-Eigen::Vector2d angles_of_direction(const Eigen::Vector3d& d_receiver) {
-  return {std::atan2(d_receiver.x(), d_receiver.z()), std::asin(std::clamp(-d_receiver.y(), -1.0, 1.0))};
+Eigen::Vector2d angles_of_direction(const Eigen::Vector3d& d_receiver, FinderAxes axes) {
+  return {std::atan2(d_receiver.x(), d_receiver.z()),
+          std::asin(std::clamp(sign_of_y(axes) * d_receiver.y(), -1.0, 1.0))};
 }
 
 std::optional<Bearing> bearing_of(const Receiver& receiver, const ReceiverReading& reading) {
   if (reading.receiver != receiver.id) throw std::invalid_argument("bearing_of: the reading is of another receiver");
-  const std::optional<Direction> seen =
-      receiver.camera ? direction_of_pixel(*receiver.camera, reading.value) : direction_of_finder(reading.value);
+  const std::optional<Direction> seen = receiver.camera ? direction_of_pixel(*receiver.camera, reading.value)
+                                                        : direction_of_finder(reading.value, receiver.axes);
   if (!seen) return std::nullopt;
   const Eigen::Matrix3d R_world_receiver = receiver.T_world_receiver.linear();
   const Eigen::Vector3d d_world = (R_world_receiver * seen->d_receiver).normalized();
@@ -122,7 +129,7 @@ std::optional<ReceiverReading> reading_of(const Receiver& receiver, const Eigen:
   reading.time = own_time(receiver.clock, common);
   reading.receiver = receiver.id;
   if (!receiver.camera) {
-    reading.value = angles_of_direction(p_receiver.normalized());
+    reading.value = angles_of_direction(p_receiver.normalized(), receiver.axes);
     return reading;
   }
   const auto projection = project(*receiver.camera, p_receiver);

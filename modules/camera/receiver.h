@@ -24,13 +24,19 @@ struct ReceiverClock {
 Timestamp common_time(const ReceiverClock& clock, Timestamp own);
 Timestamp own_time(const ReceiverClock& clock, Timestamp common);
 
-/// What watches the sky from a known place: a camera, or a direction finder that reports azimuth and elevation. Its
-/// axes are a camera's: x right, y down, z forward. Azimuth is counted from z towards x, elevation from the x-z plane
-/// upwards (towards −y). Its id is unique among receivers.
+/// Which way the y axis of a direction finder points; its x-z plane is level where it stands upright.
+enum class FinderAxes {
+  YDown,  ///< x right, y down, z forward, as a camera's
+  YUp,    ///< x left, y up, z forward, as the UAV paper's
+};
+
+/// What watches the sky from a known place: a camera, or a direction finder that reports azimuth and elevation. Azimuth
+/// is counted from z towards x, elevation from the x-z plane upwards. Its id is unique among receivers.
 struct Receiver {
   int id = 0;
   std::string name;
-  std::optional<Camera> camera;  ///< empty: a direction finder. Camera::readout_s is its rolling shutter
+  std::optional<Camera> camera;         ///< empty: a direction finder. Camera::readout_s is its rolling shutter
+  FinderAxes axes = FinderAxes::YDown;  ///< of a direction finder
   Eigen::Isometry3d T_world_receiver = Eigen::Isometry3d::Identity();
   std::optional<Matrix6d> pose_covariance{};  ///< of its right perturbation xi = (translation, rotation); m, rad
   ReceiverClock clock;
@@ -41,9 +47,9 @@ struct Receiver {
 std::optional<std::string> find_fault(const Receiver& receiver);
 
 /// The unit direction of azimuth and elevation (rad) in the receiver's axes, and the reverse, azimuth in (−π, π].
-/// Source: UAV paper eqs. 2 and 3, with y downwards.
-Eigen::Vector3d direction_of_angles(const Eigen::Vector2d& azimuth_elevation);
-Eigen::Vector2d angles_of_direction(const Eigen::Vector3d& d_receiver);
+/// Source: UAV paper eqs. 2 and 3.
+Eigen::Vector3d direction_of_angles(const Eigen::Vector2d& azimuth_elevation, FinderAxes axes = FinderAxes::YDown);
+Eigen::Vector2d angles_of_direction(const Eigen::Vector3d& d_receiver, FinderAxes axes = FinderAxes::YDown);
 
 /// The line of sight of a reading: direction by the camera's model or the angles, time by the receiver's clock and, of
 /// a rolling shutter, the pixel's row; covariance from the reading's, or from Receiver::sigma. Empty where a lens's

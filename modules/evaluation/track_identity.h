@@ -15,6 +15,7 @@ namespace alidade {
 struct IdentifiedPosition {
   int id = 0;
   Eigen::Vector3d p_world = Eigen::Vector3d::Zero();
+  std::optional<Eigen::Matrix3d> covariance{};  ///< of p_world, m²
 };
 
 /// What is true and what is answered at one moment; no id twice in either.

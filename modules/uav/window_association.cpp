@@ -14,7 +14,7 @@
 namespace alidade {
 namespace {
 
-constexpr int kRounds = 3;  // of search; the first finds nearly all, the others seek among what is left
+constexpr int kRounds = 4;  // of search; the first finds nearly all, the others seek among what is left
 
 void require(bool is_so, const char* field, const char* bound, double value) {
   if (!is_so) throw std::invalid_argument(fmt::format("{} must be {}, got {}", field, bound, value));

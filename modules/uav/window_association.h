@@ -25,8 +25,9 @@ struct WindowOptions {
   double greatest_range_m = 1e4;  ///< of a target from a receiver
   /// How far off (χ² of two degrees of freedom) a bearing of a target may be: 16 loses one in 3000.
   double gate_chi2 = 16.0;
-  /// Of an accepted hypothesis, natural logarithm: how much more probable a target is than false bearings alone.
-  double least_log_ratio = 6.0;
+  /// Of an accepted hypothesis, natural logarithm: how much more probable a target is than false bearings alone. 0
+  /// makes the fewest errors of both kinds if all else is as stated; 2 favours no target a little.
+  double least_log_ratio = 2.0;
 };
 
 /// Throws std::invalid_argument naming field, value and bound.
@@ -41,7 +42,9 @@ struct TargetHypothesis {
 
 /// Tells apart the targets of a window: how many there are, where each flies (straight on), and which bearings are of
 /// it. Any number of receivers >= 2, any times, missed detections, false bearings. No bearing is of two targets; the
-/// greatest log-likelihood ratio comes first. Empty where nothing is more probable than false bearings.
+/// greatest log-likelihood ratio comes first. Empty where nothing is more probable than false bearings. Every target is
+/// taken to be in every receiver's view. A window is as long as targets fly straight on to within the bearings' noise;
+/// some five scans of each receiver are enough.
 /// Throws std::invalid_argument as fit_motion does, and for bad options.
 /// Source: UAV paper page, "Where we go past it", 2.
 std::vector<TargetHypothesis> associate_window(std::span<const Bearing> bearings, const WindowOptions& options = {});

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 #include <utility>
 
 #include "uav/window_guess.h"
@@ -15,6 +16,7 @@ namespace {
 constexpr std::size_t kMostScansAsked = 30;   // about a guess: enough to tell
 constexpr std::size_t kPicksPerReceiver = 6;  // scans from which guesses start, spread over the window
 constexpr std::size_t kMostTriples = 150, kMostPairs = 60;
+constexpr double kWellSeen = 0.4;           // of what a target's bearings usually gain
 constexpr std::size_t kGrownPerAnchor = 3;  // the best guesses through one bearing
 
 struct Seed {
@@ -114,13 +116,25 @@ std::vector<Combination<4>> choose_pairs(const BearingWindow& window,
 // Among the rest, one is rare: a target that was missed half the time shows.
 SupportSearch support_in(Crowd crowd, const std::vector<char>& is_free) {
   if (crowd == Crowd::Whole) return {is_free, 0.2, -4.0, 2.0};
-  return {is_free, 0.03, -10.0, 2.0};
+  return {is_free, 0.01, -10.0, 0.0};
+}
+
+// While all is free, a few bearings of several targets may look like one more: only what is seen often counts then.
+double least_in(Crowd crowd, const BearingWindow& window) {
+  if (crowd == Crowd::Rest) return window.options.least_log_ratio;
+  const double gain = std::accumulate(window.log_gain.begin(), window.log_gain.end(), 0.0) /
+                      static_cast<double>(window.log_gain.size());
+  const double usual = gain * window.options.detection_probability * static_cast<double>(window.scans.size());
+  return std::max(window.options.least_log_ratio, kWellSeen * usual);
 }
 
 class Search {
  public:
   Search(const BearingWindow& window, Crowd crowd, std::vector<char>& is_free)
-      : window_(window), is_free_(is_free), support_(support_in(crowd, is_free)) {}
+      : window_(window),
+        is_free_(is_free),
+        support_(support_in(crowd, is_free)),
+        least_log_ratio_(least_in(crowd, window)) {}
 
   void try_triple(const std::array<std::size_t, 3>& scans) {
     const auto rest = scans_beside(scans);
@@ -202,7 +216,7 @@ class Search {
       auto track = grow_track(window_, seed.bearings, is_free_);
       if (track && (!best || track->log_ratio > best->log_ratio)) best = std::move(track);
     }
-    if (!best || best->log_ratio < window_.options.least_log_ratio) return;
+    if (!best || best->log_ratio < least_log_ratio_) return;
     for (const std::size_t bearing : best->bearing_of_scan) {
       if (bearing != kNoBearing) is_free_[bearing] = 0;
     }
@@ -212,6 +226,7 @@ class Search {
   const BearingWindow& window_;
   std::vector<char>& is_free_;
   SupportSearch support_;
+  double least_log_ratio_;
   std::vector<WindowTrack> tracks_;
 };
 

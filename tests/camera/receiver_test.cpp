@@ -60,6 +60,15 @@ TEST(Receiver, GivesTheAnglesBackOfADirection) {
   }
 }
 
+TEST(Receiver, CountsElevationTowardsYWhereThatIsUp) {
+  Receiver receiver = finder();
+  receiver.axes = FinderAxes::YUp;
+  EXPECT_TRUE(direction_of_angles({0.4, 1.5707963267948966}, FinderAxes::YUp).isApprox(Eigen::Vector3d::UnitY()));
+  const Eigen::Vector3d p_world = point_before(receiver);
+  const auto bearing = bearing_of(receiver, *reading_of(receiver, p_world, Timestamp(50s)));
+  EXPECT_TRUE(bearing->direction_world.isApprox((p_world - bearing->origin_world).normalized(), 1e-9));
+}
+
 TEST(Receiver, TakesClocksThereAndBack) {
   const ReceiverClock clock{3.25, 2e-5, Timestamp(100s), Eigen::Matrix2d::Zero()};
   EXPECT_EQ(common_time(clock, Timestamp(100s)), Timestamp(103250ms));
@@ -84,7 +93,9 @@ TEST(Receiver, LooksAtThePointThatItReads) {
 
 // The covariance along the tangents is that of the directions of readings moved by their noise.
 TEST(Receiver, CarriesTheNoiseOfAReadingIntoTheDirection) {
-  for (const Receiver& receiver : {finder(), camera()}) {
+  Receiver other_axes = finder();
+  other_axes.axes = FinderAxes::YUp;
+  for (const Receiver& receiver : {finder(), camera(), other_axes}) {
     ReceiverReading reading = *reading_of(receiver, point_before(receiver), Timestamp(50s));
     reading.covariance << 2, 0.7, 0.7, 1;
     if (!receiver.camera) reading.covariance *= 1e-6;
