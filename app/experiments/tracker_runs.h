@@ -32,10 +32,11 @@ struct TrackerScore {
   Ratio to_true_association;  ///< RMS, of the targets and periods that both filters answer
   Ratio to_bound;             ///< RMS to the posterior bound of the bearings that are truly of the target
   ErrorConsistency nees;      ///< of position and velocity, in the last period: errors of periods in a row are alike
-  double slowest_found = 0.0, slowest_given_up = 0.0;  ///< periods, the worst of all targets
-  int never_found = 0;
-  double late_found_share = 0.0, late_given_up_share = 0.0;  ///< of targets, later than 3 periods
-  double us_per_bearing = 0.0;                               ///< CPU time of one thread, initiation included
+  /// Periods from a target's first to its first estimate, and from its last to its estimate's last: of 99 % of the
+  /// targets at most so many, and of the worst one. A target that is never found counts as found at the end.
+  double found_99 = 0.0, found_worst = 0.0, given_up_99 = 0.0, given_up_worst = 0.0;
+  double moved_by_shuffling_m = 0.0;  ///< the farthest that an estimate is from where it is in order of arrival
+  double us_per_bearing = 0.0;        ///< CPU time of one thread, initiation included
 };
 
 /// All runs of a cell, several at once; the seed is context's and the run's number.
