@@ -10,7 +10,7 @@ namespace alidade {
 /// What a user may choose about a calibration of detectors.
 struct DetectorCalibrationChoice {
   DetectorCalibrationOptions solver;
-  WindowOptions windows;
+  WindowFitOptions windows;
   double reference_sigma_m = 2e-3;  ///< motion capture under motion, its clock's error included
   bool rotor_times = true;          ///< of laser sweeps that were stamped late (see time_by_rotors)
 };

@@ -43,7 +43,8 @@ Json hello_message(const LiveHello& hello) {
                {"sent_clock", "host, monotonic (CLOCK_MONOTONIC)"},
                {"pose", hello.pose},
                {"unit_of_length", hello.is_metric ? "m" : "free"},
-               {"covariance", "of xi = (translation m, rotation rad), T * exp(xi)"}};
+               {"covariance", hello.pose == "p_world_m" ? "of (p m, v m/s), world axes"
+                                                        : "of xi = (translation m, rotation rad), T * exp(xi)"}};
   if (!hello.bodies.empty()) message["bodies"] = hello.bodies;
   return message;
 }
@@ -78,6 +79,21 @@ Json pose_message(const std::string& source, const std::string& body, const Body
   message["covariance"] = rows_of(state.covariance.topLeftCorner<6, 6>());
   message["v_world_m_s"] = list_of(state.v_world);
   message["omega_body_rad_s"] = list_of(state.omega_body);
+  return message;
+}
+
+Json target_message(const std::string& source, const TargetRow& target) {
+  Json message{{"type", "target"},
+               {"source", source},
+               {"target", target.target},
+               {"t_ns", nanoseconds(target.time)},
+               {"state", target.state},
+               {"p_world_m", list_of(target.p_world)},
+               {"v_world_m_s", list_of(target.v_world)}};
+  if (target.covariance) message["covariance"] = rows_of(*target.covariance);
+  message["sightings"] = target.sightings;
+  if (target.temperature_k) message["temperature_k"] = *target.temperature_k;
+  if (target.temperature_sigma_k) message["temperature_sigma_k"] = *target.temperature_sigma_k;
   return message;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
 #include <stdexcept>
@@ -53,13 +54,22 @@ std::vector<Vector3d> first_places(const TargetSceneOptions& options, Random& ra
   return places;
 }
 
+// Across the first receiver's view, which looks along x.
+std::vector<Vector3d> places_in_row(const TargetSceneOptions& options) {
+  std::vector<Vector3d> places;
+  for (int i = 0; i < options.targets; ++i) {
+    places.push_back((i - 0.5 * (options.targets - 1)) * *options.row_spacing_m * Vector3d::UnitY());
+  }
+  return places;
+}
+
 Timestamp period_begin(const TargetSceneOptions& options, double period) {
   return Timestamp(from_seconds(period * options.period_s));
 }
 
 std::vector<TargetPath> draw_paths(const TargetSceneOptions& options, Random& random) {
   const Vector3d v = common_velocity(options, random);
-  const std::vector<Vector3d> places = first_places(options, random);
+  const std::vector<Vector3d> places = options.row_spacing_m ? places_in_row(options) : first_places(options, random);
   std::vector<TargetPath> paths;
   for (int i = 0; i < options.targets; ++i) {
     TargetPath path;
@@ -195,7 +205,8 @@ void validate(const TargetSceneOptions& o) {
   for (const double delay : o.delays_s) require(delay >= 0.0, "delays_s", ">= 0 s", delay);
   require(o.slew_rad_s > 0.0, "slew_rad_s", "> 0 rad/s", o.slew_rad_s);
   require(o.sigma_m >= 0.0, "sigma_m", ">= 0 m", o.sigma_m);
-  require(o.spread_m >= 0.0, "spread_m", ">= 0 m", o.spread_m);
+  require(o.spread_m > 0.0, "spread_m", "> 0 m", o.spread_m);
+  require(o.row_spacing_m.value_or(0.0) >= 0.0, "row_spacing_m", ">= 0 m", o.row_spacing_m.value_or(0.0));
   require(o.top_speed_m_s > 0.0, "top_speed_m_s", "> 0 m/s", o.top_speed_m_s);
   require(o.detection_probability >= 0.0 && o.detection_probability <= 1.0, "detection_probability", "in [0, 1]",
           o.detection_probability);
@@ -210,6 +221,18 @@ Vector3d position_at(const TargetPath& path, Timestamp time) {
 
 Vector3d velocity_at(const TargetPath& path, Timestamp time) {
   return path.v_world + to_seconds(time - path.origin) * path.a_world;
+}
+
+TargetSceneOptions paper_table_scene(int targets, const std::vector<double>& delays_s, unsigned seed) {
+  TargetSceneOptions options;
+  options.receivers = 3;  // the alternative algorithm looks at the first two, whose lines are orthogonal too
+  options.targets = targets;
+  options.delays_s = delays_s;
+  options.row_spacing_m = 3.0;
+  options.scatter_m_s = 0.0;
+  options.top_speed_m_s = std::numeric_limits<double>::infinity();
+  options.seed = seed;
+  return options;
 }
 
 TargetScene make_target_scene(const TargetSceneOptions& options) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -33,10 +34,12 @@ struct TargetSceneOptions {
   double sigma_m = 0.1;                         ///< bearings err by sigma_m / range across the line of sight, rad
   double spread_m = 15.0;                       ///< the targets' first positions lie within a cube of this side
   double least_distance_m = 3.0;                ///< between any two of them
-  double velocity_sigma_m_s = 15.6;             ///< of each coordinate of their common velocity
-  double top_speed_m_s = 60.0;                  ///< faster ones are drawn again
-  double scatter_m_s = 1.0;                     ///< of each coordinate of each one's velocity beside the common one
-  double acceleration_m_s2 = 0.0;               ///< of each coordinate of each one's constant acceleration
+  /// If given, they start in a row across the first receiver's view instead of in the cube, so far from each other.
+  std::optional<double> row_spacing_m{};
+  double velocity_sigma_m_s = 15.6;  ///< of each coordinate of their common velocity
+  double top_speed_m_s = 60.0;       ///< faster ones are drawn again
+  double scatter_m_s = 1.0;          ///< of each coordinate of each one's velocity beside the common one
+  double acceleration_m_s2 = 0.0;    ///< of each coordinate of each one's constant acceleration
   double detection_probability = 1.0;
   double false_bearings = 0.0;  ///< mean of their (Poisson) number per receiver and period
   double cone_rad = 0.349066;   ///< full angle of the cone about the targets' middle in which they lie evenly: 20°
@@ -66,6 +69,12 @@ struct TargetScene {
   std::vector<ReceiverReading> readings;  ///< in order of time; each names its target, false ones −1
   double range_m = 0.0;                   ///< of the receivers, as drawn
 };
+
+/// The scene of the paper's tables: N = 5 periods, parallel paths 3 m apart, everything seen and nothing else. Which
+/// way they lie apart, and when the lines of sight are orthogonal, the page leaves open: across the first receiver's
+/// view (its x axis) and in the middle of the time come nearest to its re-created figures.
+/// Source: UAV paper page, "Their experiment" and "Settings that reproduce it".
+TargetSceneOptions paper_table_scene(int targets, const std::vector<double>& delays_s, unsigned seed);
 
 /// Period `i` of the scene begins at i · period_s. The same options give the same scene.
 /// Source: UAV paper page, "Their experiment" and "Settings that reproduce it".

@@ -10,6 +10,7 @@
 #include "app/evaluation_report.h"
 #include "app/evaluation_results.h"
 #include "app/result_directory.h"
+#include "app/targets/target_evaluation.h"
 #include "io/image_files.h"
 
 namespace alidade {
@@ -57,9 +58,10 @@ PairedTrajectories pair(const EvaluationRecord& record) {
 class EvaluateCommand : public Command {
  public:
   explicit EvaluateCommand(CLI::App& flags) {
-    flags.add_option("ESTIMATE", estimate_, "trajectory file, or result directory of 'alidade track camera'")
+    flags.add_option("ESTIMATE", estimate_, "trajectory, tracks of targets, or the result directory of a track")
         ->required();
-    flags.add_option("TRUTH", truth_, "trajectory file, or dataset directory with known poses")->required();
+    flags.add_option("TRUTH", truth_, "trajectory, dataset directory with known poses, or true paths of targets")
+        ->required();
     options_.add_choice(
         "align", alignment_,
         {{"none", AlignmentKind::None}, {"se3", AlignmentKind::Rigid}, {"sim3", AlignmentKind::Similarity}},
@@ -71,10 +73,33 @@ class EvaluateCommand : public Command {
     options_.add_choice("rpe_unit", unit_,
                         {{"frames", StepUnit::Frames}, {"m", StepUnit::Metres}, {"s", StepUnit::Seconds}},
                         "unit of rpe_step");
+    options_.add("cutoff_m", cutoff_m_, "m", "of targets: an estimate farther from one is none of it");
     options_.add_check([this] { check(); });
   }
 
   ExitCode run(const RunContext& context) override {
+    return is_target_file(estimate_) ? evaluate_targets(context) : evaluate_poses(context);
+  }
+
+ private:
+  ExitCode evaluate_targets(const RunContext& context) const {
+    const std::vector<TargetRow> truth = read_target_rows(target_file_of(truth_));
+    const TargetScores scores =
+        score_targets(moments_of(read_target_rows(target_file_of(estimate_)), truth), cutoff_m_);
+    for (const std::string& line : table_lines(scores)) context.tell(line);
+    context.publish(summary_of(scores));
+    if (context.output.empty()) return ExitCode::Success;
+    ResultDirectory directory(context.output, "evaluate");
+    directory.write_text("options.yaml", options_.to_yaml());
+    Report report{"Targets against the truth", context.arguments, rows_of(table_lines(scores)), {}, {}, {}, {}};
+    report.options = options_.to_yaml();
+    write_report(directory.path("report.html"), report);
+    directory.commit(summary_of(scores));
+    context.tell(fmt::format("written to {}", context.output.string()));
+    return ExitCode::Success;
+  }
+
+  ExitCode evaluate_poses(const RunContext& context) const {
     EvaluationRecord record{read_with_covariances(estimate_), read_trajectory(truth_), by_index_, association_, {}, {}};
     record.by_index |= !record.estimate.has_times || !record.truth.has_times;
     record.options = {alignment_, step()};
@@ -90,8 +115,8 @@ class EvaluateCommand : public Command {
     return ExitCode::Success;
   }
 
- private:
   void check() const {
+    if (!(cutoff_m_ > 0)) throw std::invalid_argument(fmt::format("cutoff_m must be > 0 m, got {}", cutoff_m_));
     if (!(step_ > 0)) throw std::invalid_argument(fmt::format("rpe_step must be > 0, got {}", step_));
     if (unit_ == StepUnit::Frames && step_ < 1) {
       throw std::invalid_argument(fmt::format("rpe_step must be >= 1 frame, got {}", step_));
@@ -126,16 +151,17 @@ class EvaluateCommand : public Command {
   AlignmentKind alignment_ = EvaluationOptions{}.alignment;
   bool by_index_ = false;
   AssociationOptions association_;
-  double step_ = 1;
+  double step_ = 1, cutoff_m_ = SetMetricOptions{}.cutoff_m;
   StepUnit unit_ = StepUnit::Frames;
 };
 
 }  // namespace
 
 Verb evaluate_verb() {
-  return {"evaluate", "errors of a trajectory against the truth",
-          "alidade evaluate estimate.tum groundtruth.txt --align sim3 -o evaluation", OutputUse::Optional,
-          make_command<EvaluateCommand>};
+  return {"evaluate", "errors of a trajectory, or of tracks of targets, against the truth",
+          "alidade evaluate estimate.tum groundtruth.txt --align sim3 -o evaluation\n"
+          "alidade evaluate track/tracks.csv flight/truth.csv",
+          OutputUse::Optional, make_command<EvaluateCommand>};
 }
 
 }  // namespace alidade

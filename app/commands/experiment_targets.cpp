@@ -17,7 +17,12 @@ struct Part {
   ExperimentSection (*run)(const ExperimentContext&);
 };
 
-const std::vector<Part> kParts{};
+const std::vector<Part> kParts{
+    {"tables", targets_tables},
+    {"formulas", targets_formulas},
+    {"tracker", targets_tracker},
+    {"video", targets_video},
+};
 
 std::vector<std::string> part_names() {
   std::vector<std::string> names;

@@ -8,4 +8,19 @@ namespace alidade {
 // The UAV paper's experiments and what goes beyond them, on the scenes of its page. ExperimentContext::runs is the
 // number of runs of each cell.
 
+/// The paper's Tables 1 and 2: printed, re-created on the page, re-created here in both readings of the noise; the
+/// stamped batch on the same bearings, and the bound.
+ExperimentSection targets_tables(const ExperimentContext& context);
+
+/// The paper's formulas 12 and 13 against Monte Carlo covariances, under their own noise and under that of bearings.
+ExperimentSection targets_formulas(const ExperimentContext& context);
+
+/// From rendered videos: detection of small moving objects by size and SNR, OpenCV's MOG2 beside it, and the chain from
+/// pixels to tracks. ExperimentContext::runs is the number of frames of each cell, in videos of 150.
+ExperimentSection targets_video(const ExperimentContext& context);
+
+/// The recursive tracker: against the same filter with true association and against the bound; clutter, detection,
+/// spacing, receivers, order of arrival, ways of scanning.
+ExperimentSection targets_tracker(const ExperimentContext& context);
+
 }  // namespace alidade

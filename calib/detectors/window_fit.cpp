@@ -148,7 +148,7 @@ int parameters_for(std::size_t readings) {
 // What all windows come to.
 struct Tally {
   const DetectorScene& scene;
-  const WindowOptions& options;
+  const WindowFitOptions& options;
   WindowStatistics statistics;
   std::vector<double> sigmas, rad;
 
@@ -213,7 +213,7 @@ std::optional<WindowMotion> fit_window(const DetectorScene& scene, std::span<con
   return motion;
 }
 
-void validate(const WindowOptions& o) {
+void validate(const WindowFitOptions& o) {
   if (!(o.window_s > 0 && o.window_s <= 0.1)) {
     throw std::invalid_argument(fmt::format("window_s must be > 0 s and <= 0.1 s, got {}", o.window_s));
   }
@@ -230,7 +230,7 @@ void validate(const WindowOptions& o) {
 
 WindowStatistics fit_windows(std::span<const LineDetector> detectors, const RigidBody& body,
                              std::span<const LineReading> readings, const Trajectory& motion,
-                             const WindowOptions& options, const std::stop_token& stop) {
+                             const WindowFitOptions& options, const std::stop_token& stop) {
   validate(options);
   const DetectorScene scene = scene_of(detectors, body);
   const auto placed = place_readings(detectors, body, readings);

@@ -31,7 +31,7 @@ Eigen::Isometry3d pose_after(const WindowMotion& motion, double tau_s);
 std::optional<WindowMotion> fit_window(const DetectorScene& scene, std::span<const PlacedReading> readings,
                                        const WindowMotion& start, int parameters, double loss_sigmas);
 
-struct WindowOptions {
+struct WindowFitOptions {
   double window_s = 0.02;         ///< long enough for some readings of each station, short enough for 18 parameters
   int least_readings = 8;         ///< a window with fewer is passed over
   double explained_sigmas = 4.0;  ///< a reading nearer than that to the fit is explained
@@ -39,7 +39,7 @@ struct WindowOptions {
 };
 
 /// Throws std::invalid_argument naming the field, its value and its bound.
-void validate(const WindowOptions& options);
+void validate(const WindowFitOptions& options);
 
 /// How well rigid motion explains a recording, window by window, none knowing of another.
 struct WindowStatistics {
@@ -57,6 +57,6 @@ struct WindowStatistics {
 /// time; those of unknown detectors and markers are passed over. After a stop: of the windows so far.
 WindowStatistics fit_windows(std::span<const LineDetector> detectors, const RigidBody& body,
                              std::span<const LineReading> readings, const Trajectory& motion,
-                             const WindowOptions& options = {}, const std::stop_token& stop = {});
+                             const WindowFitOptions& options = {}, const std::stop_token& stop = {});
 
 }  // namespace alidade

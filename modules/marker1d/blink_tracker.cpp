@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "marker1d/joint_assignment.h"
+#include "estimation/joint_assignment.h"
 
 namespace alidade {
 namespace {

@@ -1,4 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """uav: small flying objects seen by receivers that look at different times."""
 
-SECTIONS = []
+from figure_topics.uav import tables
+
+SECTIONS = [*tables.SECTIONS]

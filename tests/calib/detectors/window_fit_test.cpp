@@ -123,7 +123,7 @@ TEST(WindowFits, PassOverWindowsOfFewReadings) {
   auto readings = read(detectors, shaken(), kSigma);
   readings.resize(7);
   EXPECT_EQ(fit_windows(detectors, body(), readings, {}).windows, 0);
-  WindowOptions options;
+  WindowFitOptions options;
   options.window_s = 0;
   EXPECT_THROW(fit_windows(detectors, body(), readings, {}, options), std::invalid_argument);
 }

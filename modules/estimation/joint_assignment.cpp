@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "marker1d/joint_assignment.h"
+#include "estimation/joint_assignment.h"
 
 #include <vector>
 
@@ -10,7 +10,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// All ways for tracks that compete for peaks, one after the other.
+// All ways for tracks that compete for detections, one after the other.
 class Enumeration {
  public:
   Enumeration(const MatrixXd& likelihood, const VectorXd& miss, const std::vector<Index>& tracks)
@@ -42,13 +42,13 @@ class Enumeration {
     }
     chosen_[k] = likelihood_.cols();
     descend(k + 1, weight * miss_(tracks_[k]));
-    for (Index peak = 0; peak < likelihood_.cols(); ++peak) {
-      const double own = likelihood_(tracks_[k], peak);
-      if (!(own > 0) || is_taken_[static_cast<std::size_t>(peak)]) continue;
-      is_taken_[static_cast<std::size_t>(peak)] = true;
-      chosen_[k] = peak;
+    for (Index detection = 0; detection < likelihood_.cols(); ++detection) {
+      const double own = likelihood_(tracks_[k], detection);
+      if (!(own > 0) || is_taken_[static_cast<std::size_t>(detection)]) continue;
+      is_taken_[static_cast<std::size_t>(detection)] = true;
+      chosen_[k] = detection;
       descend(k + 1, weight * own);
-      is_taken_[static_cast<std::size_t>(peak)] = false;
+      is_taken_[static_cast<std::size_t>(detection)] = false;
     }
   }
 
