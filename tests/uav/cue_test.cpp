@@ -77,9 +77,10 @@ TEST(Cue, CarriesTheCovarianceOfStateAndPose) {
     behind.T_world_receiver = receiver.T_world_receiver * perturbation(-kStep * Vector6d::Unit(axis));
     J_pose.col(axis) = (angles(ahead, state) - angles(behind, state)) / (2 * kStep);
   }
-  Vector6d variances;
-  variances << 0.1, 0.2, 0.3, 1e-4, 2e-4, 3e-4;
-  receiver.pose_covariance = variances.asDiagonal().toDenseMatrix();
+  Vector6d sigmas;
+  sigmas << 0.3, 0.4, 0.5, 0.01, 0.015, 0.02;
+  const Matrix6d correlations = 0.5 * (Matrix6d::Identity() + Matrix6d::Ones());
+  receiver.pose_covariance = sigmas.asDiagonal() * correlations * sigmas.asDiagonal();
   const Eigen::Matrix2d of_both = of_state + J_pose * *receiver.pose_covariance * J_pose.transpose();
   EXPECT_TRUE(cue_at(receiver, state, at(0))->covariance.isApprox(of_both, 1e-6));
 }

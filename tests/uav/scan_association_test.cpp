@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "uav/scan_association.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 namespace alidade {
@@ -100,6 +102,20 @@ TEST(ScanAssociation, TellsTargetsApartByTheirTemperature) {
   EXPECT_LT(x_of_first(), 0.0);
   options.temperature_sigma_k = 3.0;
   EXPECT_GT(x_of_first(), 0.0);
+}
+
+// More probably false than not by themselves, but less so than that the track was missed: 5 %.
+TEST(ScanAssociation, WeighsABearingAgainstAMiss) {
+  TargetTrackerOptions options = options_of(ScanAssociation::NearestNeighbour);
+  const TargetTrack track = track_at({0, 0, 100}, 0.2);
+  const Bearing bearing = to({0, 0, 100});
+  const double log_density = innovation_of(track.state, bearing)->log_density;
+  const auto is_claimed_at = [&](double log_ratio) -> bool {
+    options.false_bearings_per_sr = 0.95 * std::exp(log_density - log_ratio);
+    return take_scan({track}, {0, {bearing}}, options).is_claimed[0];
+  };
+  EXPECT_TRUE(is_claimed_at(0.9 * std::log(0.05)));
+  EXPECT_FALSE(is_claimed_at(1.1 * std::log(0.05)));
 }
 
 // More ways than can be counted: nearest neighbour, and every bearing is of one track still.
