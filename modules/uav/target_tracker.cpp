@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <tuple>
 
+#include <Eigen/LU>
+
 namespace alidade {
 namespace {
 
@@ -17,6 +19,9 @@ void require_sense(const Bearing& bearing) {
   if (!is_finite) throw std::invalid_argument("TargetTracker: a bearing's value is not finite");
   if (std::abs(bearing.direction_world.squaredNorm() - 1.0) > 1e-6) {
     throw std::invalid_argument("TargetTracker: a bearing's direction is not of unit length");
+  }
+  if (!(bearing.covariance(0, 0) > 0.0 && bearing.covariance.determinant() > 0.0)) {
+    throw std::invalid_argument("TargetTracker: a bearing's covariance is not positive definite");
   }
 }
 

@@ -35,7 +35,8 @@ class TargetTracker {
   explicit TargetTracker(const TargetTrackerOptions& options = {});
 
   /// Takes a bearing in, and the time on to its own; false where it came too late and was left out. Throws
-  /// std::invalid_argument for a direction that is not of unit length and for values that are not finite.
+  /// std::invalid_argument for a direction that is not of unit length, for a covariance that is not positive definite,
+  /// and for values that are not finite.
   bool add(const Bearing& bearing);
 
   /// Nothing older than lag_s before `time` is coming any more.

@@ -257,6 +257,10 @@ TEST(TargetTracker, RefusesWhatIsNoBearing) {
   Bearing bearing;
   bearing.direction_world = {0, 0, 2};
   EXPECT_THROW(tracker.add(bearing), std::invalid_argument);
+  bearing.direction_world = {0, 0, 1};
+  bearing.covariance.setZero();
+  EXPECT_THROW(tracker.add(bearing), std::invalid_argument);
+  bearing.covariance.setIdentity();
   bearing.direction_world = {0, 0, std::nan("")};
   EXPECT_THROW(tracker.add(bearing), std::invalid_argument);
 }
