@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "view/canvas.h"
+#include "view/heat_map.h"
 
 namespace alidade {
 namespace {
@@ -46,14 +47,6 @@ const Camera& camera_of(const BundleFit& fit, int camera) {
 double round_down(double value) {
   const double power = std::pow(10.0, std::floor(std::log10(value)));
   return value >= 5 * power ? 5 * power : value >= 2 * power ? 2 * power : power;
-}
-
-// From blue (little) over yellow to red (much).
-Rgb heat(double share) {
-  const double s = std::clamp(share, 0.0, 1.0);
-  const auto mix = [](double a, double b, double t) { return static_cast<std::uint8_t>(std::lround(a + (b - a) * t)); };
-  if (s < 0.5) return {mix(60, 250, 2 * s), mix(110, 230, 2 * s), mix(190, 140, 2 * s)};
-  return {mix(250, 200, 2 * s - 1), mix(230, 50, 2 * s - 1), mix(140, 40, 2 * s - 1)};
 }
 
 }  // namespace
@@ -114,7 +107,7 @@ cv::Mat draw_uncertainty(const UncertaintyMap& map, const Camera& camera) {
       const cv::Point2d a = drawing.at(centre - half), c = drawing.at(centre + half);
       const std::vector<cv::Point2d> cell{a, {c.x, a.y}, c, {a.x, c.y}};
       drawing.canvas.restrict_to({0, static_cast<int>(kMargin), 10'000, 10'000});
-      drawing.canvas.fill_polygon(cell, heat(std::log(sigma / least) / span));
+      drawing.canvas.fill_polygon(cell, heat_colour(std::log(sigma / least) / span));
     }
   }
   for (int row = every / 2; row < map.rows; row += every) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
 #include <stdexcept>
 
@@ -59,14 +60,22 @@ Receiver place_receiver(const SkySceneOptions& options, int index) {
   return receiver;
 }
 
-bool is_seen_by_all(const SkyScene& scene, const TargetPath& path) {
+std::optional<Eigen::Vector2d> pixel_of(const Receiver& receiver, const TargetPath& path, Timestamp time) {
+  const auto reading = reading_of(receiver, position_at(path, time), time);
+  if (!reading) return std::nullopt;
+  return reading->value;
+}
+
+// Whether all cameras see it move, all the time.
+bool is_seen_by_all(const SkyScene& scene, const TargetPath& path, double least_speed_px_s) {
   constexpr int kMoments = 9;
-  constexpr double kMargin_px = 24.0;
+  constexpr double kMargin_px = 24.0, kStep_s = 0.1;
   for (int i = 0; i < kMoments; ++i) {
     const Timestamp time(from_seconds(scene.duration_s * i / (kMoments - 1)));
     for (const Receiver& receiver : scene.receivers) {
-      const auto reading = reading_of(receiver, position_at(path, time), time);
-      if (!reading || !is_inside(*receiver.camera, reading->value, kMargin_px)) return false;
+      const auto here = pixel_of(receiver, path, time), there = pixel_of(receiver, path, time + from_seconds(kStep_s));
+      if (!here || !there || !is_inside(*receiver.camera, *here, kMargin_px)) return false;
+      if ((*there - *here).norm() < least_speed_px_s * kStep_s) return false;
     }
   }
   return true;
@@ -100,6 +109,7 @@ void validate(const SkySceneOptions& o) {
   require(o.duration_s > 0.0, "duration_s", "> 0 s", o.duration_s);
   require(o.least_speed_m_s > 0.0, "least_speed_m_s", "> 0 m/s", o.least_speed_m_s);
   require(o.greatest_speed_m_s >= o.least_speed_m_s, "greatest_speed_m_s", ">= least_speed_m_s", o.greatest_speed_m_s);
+  require(o.least_speed_px_s >= 0.0, "least_speed_px_s", ">= 0 px/s", o.least_speed_px_s);
   for (const DotLook& dot : o.dots) {
     require(dot.size_px > 0.0 && dot.size_px <= 50.0, "size_px", "in (0, 50] px", dot.size_px);
     require(dot.snr >= 0.0, "snr", ">= 0", dot.snr);
@@ -121,7 +131,9 @@ SkyScene make_sky_scene(const SkySceneOptions& options) {
   for (int i = 0; i < static_cast<int>(options.dots.size()); ++i) {
     double slowness = 1.0;
     TargetPath path = draw_path(options, slowness, random);
-    while (!is_seen_by_all(scene, path)) path = draw_path(options, slowness *= 0.995, random);
+    while (!is_seen_by_all(scene, path, slowness * options.least_speed_px_s)) {
+      path = draw_path(options, slowness *= 0.998, random);
+    }
     path.target = i;
     scene.paths.push_back(path);
   }

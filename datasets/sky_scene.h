@@ -20,6 +20,7 @@ struct SkySceneOptions {
   double duration_s = 10.0;
   std::vector<DotLook> dots{{4.0, 10.0, true}, {3.0, 8.0, false}, {5.0, 6.0, true}};  ///< one per target
   double least_speed_m_s = 6.0, greatest_speed_m_s = 14.0;
+  double least_speed_px_s = 12.0;  ///< in every camera's image: what hangs there is no moving object
   SkyLook look;
   unsigned seed = 1;
 };
@@ -28,8 +29,8 @@ struct SkySceneOptions {
 void validate(const SkySceneOptions& options);
 
 /// Cameras 2 m above the ground that look up a little so that the skyline is in the picture, and targets on curved
-/// paths (constant acceleration) that stay in the view of all cameras; where no such path is found they fly more
-/// slowly. The same options give the same scene.
+/// paths (constant acceleration) that stay in the view of all cameras; where no such path is found they are slower, and
+/// may be. The same options give the same scene.
 SkyScene make_sky_scene(const SkySceneOptions& options = {});
 
 }  // namespace alidade

@@ -25,4 +25,16 @@ ExperimentSection targets_window(const ExperimentContext& context);
 /// The placement map's bound against Monte Carlo errors, at ten places.
 ExperimentSection targets_placement(const ExperimentContext& context);
 
+/// The recursive tracker: against the same filter with true association and against the bound; clutter, detection,
+/// spacing, receivers, order of arrival, ways of scanning.
+ExperimentSection targets_tracker(const ExperimentContext& context);
+
+/// Where a receiver that has to turn will see a target: the error of the predicted direction against its covariance, by
+/// lead time and by way of moving; and the rotating and cued ways of scanning that such receivers make.
+ExperimentSection targets_cue(const ExperimentContext& context);
+
+/// From rendered videos: detection of small moving objects by size and SNR, OpenCV's MOG2 beside it, and the chain from
+/// pixels to tracks. ExperimentContext::runs is the number of frames of each cell, in videos of 150.
+ExperimentSection targets_video(const ExperimentContext& context);
+
 }  // namespace alidade

@@ -15,9 +15,9 @@ struct DotFilterOptions {
   std::array<double, 2> sigmas_px{0.85, 1.4};
   int surround_px =
       15;  ///< side of the square whose mean is taken off: wider than any dot, narrower than clouds' waves
-  /// Least response, in standard deviations of what the filter gives at this place and time. Low: noise passes it some
-  /// hundred times in a frame of a million pixels; what does is then asked to move on like an object (ShortTracks).
-  double threshold = 3.5;
+  /// Least response, in standard deviations of what the filter gives at this place and time. Low: noise passes it a
+  /// thousand times in a frame of a million pixels; what does is then asked to move on like an object (ShortTracks).
+  double threshold = 3.0;
   double memory_frames = 50.0;    ///< over which each pixel's noise is learnt: to a tenth
   double least_noise_grey = 0.5;  ///< of a pixel; where the sensor is saturated there is none, and rounding makes 0.3
   int border_px = 8;              ///< not looked at along the image's border

@@ -25,15 +25,18 @@ struct DotFitOptions {
   double greatest_sigma_px = 2.6;  ///< wider is a cloud, a bird near by or a tree: a disc of 10 px has 2.5
   double most_move_px = 2.0;       ///< of the centre from the peak
   double least_height = 2.0;       ///< of the dot, in standard deviations of a pixel's noise
+  double most_misfit = 0.25;       ///< root mean square beside noise, in heights: an edge has 0.3 and more, a disc 0.05
 };
 
 /// Least squares of a round Gaussian on a plane (brightness and its slope) to the pixels of a residual (CV_32FC1) about
-/// a peak; the noise is that of the pixels farther out. Covariance: the Cramér–Rao bound for white noise, as
-/// (Jᵀ J)⁻¹ noise². Empty where it does not settle within the options' bounds, or the noise is zero.
+/// a peak; the noise is that of the pixels farther out. Covariance: the Cramér–Rao bound for white noise,
+/// (Jᵀ J)⁻¹ noise², with the mean squared misfit in place of noise² where that is larger. Empty where it does not
+/// settle within the options' bounds, or the noise is zero.
 std::optional<FittedDot> fit_dot(const cv::Mat& residual, const DotPeak& peak, const DotFitOptions& options = {});
 
-/// The diameter of the disc whose image has this standard deviation once the pixel's own width and a lens' blur (px)
-/// are taken off; 0 where nothing is left.
+/// The diameter of the disc to which a Gaussian of this standard deviation is fitted, once the pixel's own width and a
+/// lens' blur (px) are taken off: to 6 % from 3 px on, while one of 2 px looks up to a fifth smaller; 0 where nothing
+/// is left.
 double disc_diameter_px(double sigma_px, double blur_px);
 
 }  // namespace alidade

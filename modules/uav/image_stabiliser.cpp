@@ -121,18 +121,31 @@ std::optional<Eigen::Isometry2d> ImageStabiliser::follow(const cv::Mat& grey) {
   const Vector3d sway = fit_sway(moves, 0.2 * options_.inlier_px, median_shift(moves));
   if (count_agreeing(moves, sway, options_.inlier_px) < options_.least_corners) return std::nullopt;
   if (sway.head<2>().norm() > options_.most_shift_px) return std::nullopt;
-  last_ = sway;
-  sum_ += sway;
-  ++followed_;
+  remember(sway);
   Eigen::Isometry2d T_image_first = Eigen::Isometry2d::Identity();
   T_image_first.linear() = Eigen::Rotation2Dd(sway[2]).toRotationMatrix();
   T_image_first.translation() = middle_ + moved(-middle_, sway);
   return T_image_first;
 }
 
+void ImageStabiliser::remember(const Vector3d& sway) {
+  const Vector2d mean = sum_.head<2>() / (followed_ + 1.0);
+  for (int i = 0; i < 2; ++i) returns_[i] += (last_[i] - mean[i]) * (sway[i] - mean[i]) < 0.0;
+  last_ = sway;
+  sum_ += sway;
+  sum_of_squares_ += sway.head<2>().cwiseAbs2();
+  ++followed_;
+}
+
 Eigen::Vector2d ImageStabiliser::mean_pixel(const Eigen::Vector2d& first) const {
   const Vector3d mean = sum_ / (followed_ + 1.0);  // the first image's is 0
   return middle_ + moved(first - middle_, mean);
+}
+
+Eigen::Matrix2d ImageStabiliser::mean_covariance() const {
+  const Vector2d mean = sum_.head<2>() / (followed_ + 1.0);
+  const Vector2d variance = sum_of_squares_ / (followed_ + 1.0) - mean.cwiseAbs2();
+  return variance.cwiseQuotient(Vector2d::Ones() + returns_).asDiagonal();
 }
 
 }  // namespace alidade

@@ -39,13 +39,21 @@ class ImageStabiliser {
   /// Where a pixel of the first image is on average over all images so far: about where it is while nothing sways.
   Eigen::Vector2d mean_pixel(const Eigen::Vector2d& first) const;
 
+  /// How well that is known, px²: the variance of the swaying over the number of times that it has come back. What it
+  /// errs by stays much the same from frame to frame.
+  Eigen::Matrix2d mean_covariance() const;
+
  private:
+  void remember(const Eigen::Vector3d& sway);
+
   StabiliserOptions options_;
   FlowOptions flow_options_;
   std::optional<FlowImage> first_;
   std::vector<Eigen::Vector2d> corners_;
   Eigen::Vector2d middle_ = Eigen::Vector2d::Zero();
   Eigen::Vector3d last_ = Eigen::Vector3d::Zero(), sum_ = Eigen::Vector3d::Zero();  // shift px, turn rad
+  Eigen::Vector2d sum_of_squares_ = Eigen::Vector2d::Zero();                        // of the shift
+  Eigen::Vector2d returns_ = Eigen::Vector2d::Zero();                               // how often it crossed its mean
   int followed_ = 0;
 };
 

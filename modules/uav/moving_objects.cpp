@@ -41,8 +41,8 @@ std::vector<cv::Rect> areas_of(const std::vector<DotPeak>& peaks) {
   return areas;
 }
 
-std::vector<Sighting> sightings_of(const std::vector<DotPeak>& peaks) {
-  std::vector<Sighting> sightings;
+std::vector<SeenDot> sightings_of(const std::vector<DotPeak>& peaks) {
+  std::vector<SeenDot> sightings;
   for (const DotPeak& peak : peaks) sightings.push_back({{peak.summit.x, peak.summit.y}, peak.response});
   return sightings;
 }
@@ -82,8 +82,9 @@ std::vector<MovingObject> MovingObjectDetector::detect(const cv::Mat& image, Tim
   const std::vector<DotPeak> peaks = filter_.find(residual);
   const bool is_warm = ++frames_ > options_.warm_up_frames;
   background_.learn(residual, is_warm ? areas_of(peaks) : std::vector<cv::Rect>{});
-  if (!is_warm) return {};
+  if (2 * frames_ < options_.warm_up_frames) return {};
   const std::vector<bool> moves_on = tracks_.confirm(sightings_of(peaks), time);
+  if (!is_warm) return {};
   std::vector<MovingObject> objects;
   for (std::size_t i = 0; i < peaks.size(); ++i) {
     if (!moves_on[i]) continue;
@@ -97,8 +98,12 @@ std::optional<MovingObject> MovingObjectDetector::fit(const cv::Mat& residual, c
   const auto dot = fit_dot(residual, peak, options_.fit);
   if (!dot) return std::nullopt;
   MovingObject object;
-  object.pixel = options_.is_swaying ? stabiliser_.mean_pixel(dot->pixel) : dot->pixel;
+  object.pixel = dot->pixel;
   object.covariance = dot->covariance + options_.systematic_px * options_.systematic_px * Eigen::Matrix2d::Identity();
+  if (options_.is_swaying) {
+    object.pixel = stabiliser_.mean_pixel(dot->pixel);
+    object.covariance += stabiliser_.mean_covariance();
+  }
   object.frame_pixel = T_image_first * dot->pixel;
   object.size_px = disc_diameter_px(dot->sigma_px, options_.lens_blur_px);
   object.snr = dot->height_grey / dot->noise_grey;

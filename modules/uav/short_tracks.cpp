@@ -2,6 +2,7 @@
 #include "uav/short_tracks.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -21,6 +22,7 @@ void validate(const ShortTrackOptions& o) {
   const auto require = [](bool is_so, const char* what, double value) {
     if (!is_so) throw std::invalid_argument(fmt::format("{}, got {}", what, value));
   };
+  require(o.least_response >= 0.0, "least_response must be >= 0", o.least_response);
   require(o.least_frames >= 1, "least_frames must be >= 1", o.least_frames);
   require(o.least_evidence >= 0.0, "least_evidence must be >= 0", o.least_evidence);
   require(o.most_missed >= 0, "most_missed must be >= 0", o.most_missed);
@@ -33,14 +35,15 @@ ShortTracks::ShortTracks(const ShortTrackOptions& options) : options_(options) {
   validate(options);
 }
 
-bool ShortTracks::reaches(const Track& track, const Sighting& sighting, double since_s) const {
+bool ShortTracks::reaches(const Track& track, const SeenDot& sighting, double since_s) const {
   if (sighting.response * track.response < 0.0) return false;
+  if (!track.is_confirmed && std::abs(sighting.response) < options_.least_response) return false;
   const double distance_px = (sighting.pixel - track.last - since_s * track.velocity_px_s).norm();
   if (track.seen == 1) return distance_px <= options_.gate_px + options_.top_speed_px_s * since_s;
   return distance_px <= options_.gate_px * (1.0 + track.missed);
 }
 
-void ShortTracks::extend(Track& track, const Sighting& sighting, Timestamp time) const {
+void ShortTracks::extend(Track& track, const SeenDot& sighting, Timestamp time) const {
   constexpr double kGain = 0.5;  // of the velocity by one more sighting
   const double since_s = to_seconds(time - track.time);
   const Eigen::Vector2d velocity = (sighting.pixel - track.last) / since_s;
@@ -56,7 +59,7 @@ void ShortTracks::extend(Track& track, const Sighting& sighting, Timestamp time)
   track.is_confirmed = track.is_confirmed || (track.seen >= options_.least_frames && is_evident && has_moved);
 }
 
-std::vector<bool> ShortTracks::confirm(std::span<const Sighting> sightings, Timestamp time) {
+std::vector<bool> ShortTracks::confirm(std::span<const SeenDot> sightings, Timestamp time) {
   std::vector<Link> links;
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     const double since_s = to_seconds(time - tracks_[i].time);
@@ -80,7 +83,7 @@ std::vector<bool> ShortTracks::confirm(std::span<const Sighting> sightings, Time
   for (std::size_t i = 0; i < is_extended.size(); ++i) tracks_[i].missed += is_extended[i] ? 0 : 1;
   std::erase_if(tracks_, [&](const Track& track) { return track.missed > options_.most_missed; });
   for (std::size_t j = 0; j < sightings.size(); ++j) {
-    if (is_taken[j]) continue;
+    if (is_taken[j] || std::abs(sightings[j].response) < options_.least_response) continue;
     const auto& [pixel, response] = sightings[j];
     tracks_.push_back({pixel, pixel, Eigen::Vector2d::Zero(), time, response, response * response});
   }

@@ -12,7 +12,8 @@ namespace alidade {
 
 /// Options of ShortTracks.
 struct ShortTrackOptions {
-  int least_frames = 3;  ///< in which an object was seen before it counts
+  double least_response = 3.5;  ///< of a sighting to begin a track, or to go on with one that does not count yet
+  int least_frames = 3;         ///< in which an object was seen before it counts
   /// Root of the sum of the squared responses of an object's sightings, before it counts: three of 5.2, or five of 4.
   /// Noise that passes a threshold of 3.5 needs to meet itself six times in a row for that.
   double least_evidence = 9.0;
@@ -26,7 +27,7 @@ struct ShortTrackOptions {
 void validate(const ShortTrackOptions& options);
 
 /// A place (px) where something stands out by so many standard deviations of the noise.
-struct Sighting {
+struct SeenDot {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
   double response = 0.0;  ///< bright: positive; an object stays what it is
 };
@@ -39,7 +40,7 @@ class ShortTracks {
 
   /// Whether each of a frame's sightings continues something that has been seen often enough. Times increase, else
   /// std::invalid_argument.
-  std::vector<bool> confirm(std::span<const Sighting> sightings, Timestamp time);
+  std::vector<bool> confirm(std::span<const SeenDot> sightings, Timestamp time);
 
  private:
   struct Track {
@@ -50,8 +51,8 @@ class ShortTracks {
     int seen = 1, missed = 0;
     bool is_confirmed = false;
   };
-  bool reaches(const Track& track, const Sighting& sighting, double since_s) const;
-  void extend(Track& track, const Sighting& sighting, Timestamp time) const;
+  bool reaches(const Track& track, const SeenDot& sighting, double since_s) const;
+  void extend(Track& track, const SeenDot& sighting, Timestamp time) const;
 
   ShortTrackOptions options_;
   std::vector<Track> tracks_;

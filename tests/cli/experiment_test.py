@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""alidade experiment camera on recordings and objects, and experiment body: what they make of it, what they refuse."""
+"""alidade experiment camera on recordings and objects, experiment body and targets: what they make of it, what they
+refuse."""
 
 import unittest
 
@@ -105,6 +106,32 @@ class ExperimentOnBodies(ProgramTest):
 
     def test_refuses_too_few_frames(self):
         self.assert_refuses(["experiment", "body", "--frames", "5"], "frames must be >= 100, got 5")
+
+
+class ExperimentOnTargets(ProgramTest):
+    words = ("experiment", "targets", "--quiet", "--only")
+
+    def test_recreates_the_papers_tables_with_the_batch_beside(self):
+        self.assert_succeeds(*self.words, "tables", "--runs", "60", "-o", "out")
+        cells = self.summary("out")["tables"]
+        self.assertEqual(len(cells), 8)
+        near = cells["proposed m=1 .3/.4"]
+        self.assertAlmostEqual(near["orthogonal_bound_m"], 0.52, delta=0.005)
+        self.assertAlmostEqual(near["on_vectors"]["d_mean_m"]["value"], 0.16, delta=0.04)
+        self.assertGreater(near["on_bearings"]["d_mean_m"]["value"], 0.3)
+        self.assertLess(near["batch_to_paper"], 0.3)
+        self.assertTrue((self.directory / "out" / "tables_1.csv").is_file())
+
+    def test_formulas_hold_under_their_own_noise(self):
+        self.assert_succeeds(*self.words, "formulas", "-o", "out")
+        result = self.summary("out")["formulas"]
+        for value in [v for pair in result["pair"].values() for v in pair["white"]]:
+            self.assertAlmostEqual(value, 1, delta=0.03)
+        for one in result["several"].values():
+            self.assertAlmostEqual(one["white"], 1, delta=0.03)
+
+    def test_refuses_too_few_runs(self):
+        self.assert_refuses(["experiment", "targets", "--runs", "5"], "runs must be >= 10, got 5")
 
 
 if __name__ == "__main__":
