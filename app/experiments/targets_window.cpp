@@ -49,7 +49,7 @@ std::vector<Cell> all_cells() {
   for (const double pd : {0.7, 0.8, 0.95, 1.0}) {
     add_cell(cells, fmt::format("Pd {}", pd), [&](auto& s) { s.detection_probability = pd; });
   }
-  for (const int count : {0, 3, 5, 10}) {
+  for (const int count : {0, 3, 5}) {
     add_cell(cells, fmt::format("{} false", count), [&](auto& s) { s.false_bearings = count; });
   }
   add_cell(cells, "no delays", [](auto& s) { s.delays_s = {0.0}; });

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -14,6 +15,8 @@ using Eigen::Vector3d;
 constexpr double kGate = 4.0;                 // sigma
 constexpr double kReach = 1.2;                // of a search: angles and distances agree to that below half a radian
 constexpr std::size_t kFew = 16;              // bearings that are sooner looked at one by one
+constexpr int kPasses = 8;                    // of two pairs; two or three where delays are short
+constexpr double kSettled_m = 0.02;           // below any gate
 constexpr double kLeastSquaredSine = 1e-3;    // of the angle between a pair's lines of sight: 1.8 degrees
 constexpr double kGreatestRangeShare = 0.05;  // a guess's sigma: beyond, its gates hold anything
 
@@ -171,12 +174,15 @@ std::optional<MotionGuess> guess_of_pairs(const BearingWindow& window, const std
   if (!(guess.t1_s > guess.t0_s)) return std::nullopt;
   Vector3d v = Vector3d::Zero();
   Meeting before, after;
-  constexpr int kPasses = 3;  // each is nearer by the share of the delay in the time between the pairs
+  const double before_s = rows[1]->t_s - rows[0]->t_s, after_s = rows[3]->t_s - rows[2]->t_s;
+  const double greatest_delay_s = std::max(std::abs(before_s), std::abs(after_s));
+  // Each pass is nearer by the share of the delay in the time between the pairs.
   for (int pass = 0; pass < kPasses; ++pass) {
-    before = meet(*rows[0], *rows[1], rows[1]->origin - v * (rows[1]->t_s - rows[0]->t_s));
-    after = meet(*rows[2], *rows[3], rows[3]->origin - v * (rows[3]->t_s - rows[2]->t_s));
+    before = meet(*rows[0], *rows[1], rows[1]->origin - v * before_s);
+    after = meet(*rows[2], *rows[3], rows[3]->origin - v * after_s);
     if (!is_place(window, before) || !is_place(window, after)) return std::nullopt;
-    v = (after.p - before.p) / (guess.t1_s - guess.t0_s);
+    const Vector3d last = std::exchange(v, (after.p - before.p) / (guess.t1_s - guess.t0_s));
+    if (pass > 0 && (v - last).norm() * greatest_delay_s < kSettled_m) break;
   }
   const double before_m2 = lateral_variance(window, bearings[0], bearings[1], before);
   const double after_m2 = lateral_variance(window, bearings[2], bearings[3], after);

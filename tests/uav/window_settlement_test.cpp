@@ -11,7 +11,7 @@ namespace {
 
 TEST(WindowSettlement, KeepsOneOfTwins) {
   SeenWindow seen = see(2, 4, 0.9);
-  auto tracks = find_tracks(seen.window, Crowd::Whole, seen.is_free);
+  auto tracks = find_tracks(seen.window, {Crowd::Whole, 0.4}, seen.is_free);
   ASSERT_EQ(tracks.size(), 2u);
   tracks.push_back(tracks[0]);
   EXPECT_EQ(settle_tracks(seen.window, tracks).size(), 2u);
@@ -19,7 +19,7 @@ TEST(WindowSettlement, KeepsOneOfTwins) {
 
 TEST(WindowSettlement, GivesEachBearingToWhomItFitsBest) {
   SeenWindow seen = see(6, 5, 0.9);
-  const auto tracks = settle_tracks(seen.window, find_tracks(seen.window, Crowd::Whole, seen.is_free));
+  const auto tracks = settle_tracks(seen.window, find_tracks(seen.window, {Crowd::Whole, 0.4}, seen.is_free));
   ASSERT_EQ(tracks.size(), 6u);
   auto swapped = tracks;
   std::swap(swapped[0].bearing_of_scan[7], swapped[1].bearing_of_scan[7]);
