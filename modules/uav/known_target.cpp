@@ -14,13 +14,8 @@ std::span<const Bearing> until(std::span<const Bearing> bearings, Timestamp time
   return bearings.first(static_cast<std::size_t>(end - bearings.begin()));
 }
 
-bool can_start(std::span<const Bearing> bearings, const TargetTrackerOptions& options) {
-  return !bearings.empty() && has_sightings_to_start(static_cast<int>(bearings.size()), bearings.front().time,
-                                                     bearings.back().time, options);
-}
-
 std::optional<TargetState> started(std::span<const Bearing> bearings, const TargetTrackerOptions& options) {
-  if (!can_start(bearings, options)) return std::nullopt;
+  if (!has_sightings_to_start(bearings, options)) return std::nullopt;
   const MotionAnswer answer = fit_motion(bearings);
   if (!answer.fit) return std::nullopt;
   return start_filter(answer.fit->state, bearings, options);
@@ -65,7 +60,7 @@ std::vector<std::optional<TargetState>> tracking_bound(std::span<const Bearing> 
       const auto innovation = innovation_of(state, known[taken], options.filter.added_sigma_rad);
       if (innovation) state = absorb(state, known[taken], *innovation, once);
     }
-    const bool is_known = can_start(known, options);
+    const bool is_known = has_sightings_to_start(known, options);
     bounds.push_back(is_known ? std::optional(true_with(predict(state, time, options.filter.motion))) : std::nullopt);
   }
   return bounds;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "uav/window_association.h"
 
@@ -20,13 +21,6 @@ WindowOptions window_options(const TargetTrackerOptions& options) {
   return window;
 }
 
-bool is_sure(const TargetHypothesis& hypothesis, std::span<const Bearing> bearings,
-             const TargetTrackerOptions& options) {
-  const Timestamp first = bearings[hypothesis.bearings.front()].time, last = bearings[hypothesis.bearings.back()].time;
-  return has_sightings_to_start(static_cast<int>(hypothesis.bearings.size()), first, last, options) &&
-         hypothesis.fit.chi2 <= options.greatest_misfit * hypothesis.fit.degrees;
-}
-
 TargetTrack track_of(const TargetHypothesis& hypothesis, std::span<const Bearing> of_it,
                      const TargetTrackerOptions& options) {
   TargetTrack track;
@@ -41,12 +35,18 @@ TargetTrack track_of(const TargetHypothesis& hypothesis, std::span<const Bearing
 
 }  // namespace
 
-bool has_sightings_to_start(int sightings, Timestamp first, Timestamp last, const TargetTrackerOptions& options) {
+bool has_sightings_to_start(std::span<const Bearing> of_it, const TargetTrackerOptions& options) {
   constexpr double kThreeLooks = 1.5, kFourLooks = 2.5;  // periods; looks come one period apart, give or take a half
-  constexpr int kFewer = 2;                              // suffice where they come from many looks
-  const double periods = to_seconds(last - first) / options.period_s;
-  return (sightings >= options.least_sightings && periods > kThreeLooks) ||
-         (sightings >= options.least_sightings - kFewer && periods > kFourLooks);
+  constexpr double kLeastShare = 0.8;                    // of what its receivers could have seen of it in three looks
+  constexpr int kFewer = 2;                              // suffice where they come from four looks
+  if (of_it.empty()) return false;
+  std::set<int> receivers;
+  for (const Bearing& bearing : of_it) receivers.insert(bearing.receiver);
+  const double could_be = 3.0 * static_cast<double>(receivers.size());
+  const int needed = std::max(options.least_sightings, static_cast<int>(std::ceil(kLeastShare * could_be)));
+  const double periods = to_seconds(of_it.back().time - of_it.front().time) / options.period_s;
+  return (std::ssize(of_it) >= needed && periods > kThreeLooks) ||
+         (std::ssize(of_it) >= needed - kFewer && periods > kFourLooks);
 }
 
 TargetState vague_state(const TargetState& about, const Bearing& first, const TargetTrackerOptions& options) {
@@ -82,12 +82,11 @@ TrackStarts start_tracks(std::vector<Bearing> bearings, const TargetTrackerOptio
   TrackStarts starts;
   std::vector<bool> is_taken(bearings.size(), false);
   for (const TargetHypothesis& hypothesis : associate_window(bearings, window_options(options))) {
-    if (!is_sure(hypothesis, bearings, options)) continue;
     std::vector<Bearing> of_it;
-    for (const std::size_t place : hypothesis.bearings) {
-      of_it.push_back(bearings[place]);
-      is_taken[place] = true;
-    }
+    for (const std::size_t place : hypothesis.bearings) of_it.push_back(bearings[place]);
+    const bool fits = hypothesis.fit.chi2 <= options.greatest_misfit * hypothesis.fit.degrees;
+    if (!fits || !has_sightings_to_start(of_it, options)) continue;
+    for (const std::size_t place : hypothesis.bearings) is_taken[place] = true;
     starts.tracks.push_back(track_of(hypothesis, of_it, options));
   }
   for (std::size_t i = 0; i < bearings.size(); ++i) {

@@ -18,9 +18,10 @@ struct TrackStarts {
 /// has_sightings_to_start.
 TrackStarts start_tracks(std::vector<Bearing> bearings, const TargetTrackerOptions& options);
 
-/// Whether sightings are enough for a new track: least_sightings, spread over three looks of a receiver at least; where
-/// they are spread over four, two fewer will do.
-bool has_sightings_to_start(int sightings, Timestamp first, Timestamp last, const TargetTrackerOptions& options);
+/// Whether the bearings of a new target, in order of time, are enough for a track: least_sightings, and four fifths of
+/// what its receivers could have seen of it, in three looks at least; two fewer will do where they are spread over
+/// four.
+bool has_sightings_to_start(std::span<const Bearing> of_it, const TargetTrackerOptions& options);
 
 /// A state that knows next to nothing, at the time and about the place of `about`: what a filter of a target starts
 /// with that `first` has seen.
