@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
+
 #include "app/experiments/experiment_section.h"
 
 namespace alidade {
@@ -22,5 +24,9 @@ ExperimentSection targets_video(const ExperimentContext& context);
 /// The recursive tracker: against the same filter with true association and against the bound; clutter, detection,
 /// spacing, receivers, order of arrival, ways of scanning.
 ExperimentSection targets_tracker(const ExperimentContext& context);
+
+/// On a recorded flight with truth (read_flight): accuracy with poses and clocks of the half on which they were fitted,
+/// delays, the spline bundle, the checks. Throws InputError where the folder is none.
+ExperimentSection targets_recording(const std::filesystem::path& recording, const ExperimentContext& context);
 
 }  // namespace alidade

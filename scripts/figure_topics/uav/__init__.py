@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """uav: small flying objects seen by receivers that look at different times."""
 
-from figure_topics.uav import tables
+from figure_topics.uav import recording, tables
 
-SECTIONS = [*tables.SECTIONS]
+SECTIONS = [*tables.SECTIONS, *recording.SECTIONS]
