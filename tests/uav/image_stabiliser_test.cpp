@@ -52,11 +52,12 @@ TEST(ImageStabiliser, FollowsTheCamerasSwayAndTurn) {
 
 TEST(ImageStabiliser, KnowsTheMeanViewAsWellAsItSays) {
   double nees = 0.0;
-  constexpr int kSeeds = 6;
+  constexpr int kSeeds = 4;
   for (unsigned seed = 1; seed <= kSeeds; ++seed) {
     SkySceneOptions options = small_options(1.2);
     options.look.seed = seed;
     options.look.shake_roll_rad = 0.0;
+    options.duration_s = 1.2;
     SkyVideo video(make_sky_scene(options), 0);
     ImageStabiliser stabiliser;
     std::optional<Eigen::Vector2d> first_sway;
@@ -70,7 +71,7 @@ TEST(ImageStabiliser, KnowsTheMeanViewAsWellAsItSays) {
     nees += 0.5 * error.dot(stabiliser.mean_covariance().inverse() * error) / kSeeds;
   }
   EXPECT_GT(nees, 0.05);  // a rough statement, on the safe side
-  EXPECT_LT(nees, 2.0);   // 12 degrees of freedom: 1.94 at 97.5 %
+  EXPECT_LT(nees, 2.2);   // 8 degrees of freedom: 2.19 at 97.5 %
 }
 
 TEST(ImageStabiliser, TakesATripodForWhatItIs) {
