@@ -63,8 +63,29 @@ std::vector<Vector3d> places_in_row(const TargetSceneOptions& options) {
   return places;
 }
 
+GustEffect gust_at(const TargetPath& path, double t_s) {
+  if (path.gusts.empty() || t_s <= 0.0) return {};
+  const std::size_t step = std::min(path.gusts.size() - 1, static_cast<std::size_t>(t_s / kGustStep_s));
+  const GustEffect& begin = path.gusts[step];
+  return {begin.p_m + (t_s - static_cast<double>(step) * kGustStep_s) * begin.v_m_s, begin.v_m_s};
+}
+
 Timestamp period_begin(const TargetSceneOptions& options, double period) {
   return Timestamp(from_seconds(period * options.period_s));
+}
+
+// The velocity changes at the end of each step, by as much as white noise does within it.
+std::vector<GustEffect> draw_gusts(const TargetSceneOptions& options, Random& random) {
+  const auto steps = static_cast<std::size_t>((options.periods + 1.0) * options.period_s / kGustStep_s);
+  const double sigma_m_s = std::sqrt(options.agility_m2_s3 * kGustStep_s);
+  std::vector<GustEffect> gusts(1);
+  while (gusts.size() < steps) {
+    GustEffect gust = gusts.back();
+    gust.p_m += kGustStep_s * gust.v_m_s;
+    gust.v_m_s += normal_vector(random, sigma_m_s);
+    gusts.push_back(gust);
+  }
+  return gusts;
 }
 
 std::vector<TargetPath> draw_paths(const TargetSceneOptions& options, Random& random) {
@@ -79,6 +100,7 @@ std::vector<TargetPath> draw_paths(const TargetSceneOptions& options, Random& ra
     path.p0_world = places[static_cast<std::size_t>(i)];
     path.v_world = v + normal_vector(random, options.scatter_m_s);
     path.a_world = normal_vector(random, options.acceleration_m_s2);
+    if (options.agility_m2_s3 > 0.0) path.gusts = draw_gusts(options, random);
     const int fifth = options.periods / 5;
     if (options.comes_and_goes && i % 2 == 1) path.birth = period_begin(options, fifth);
     if (options.comes_and_goes && i % 2 == 0 && i > 0) path.death = period_begin(options, options.periods - fifth);
@@ -142,6 +164,22 @@ Vector3d within_cone(const Vector3d& axis, double full_angle_rad, Random& random
   const double turn = 2.0 * std::numbers::pi * even(random);
   const double across = std::sqrt(std::max(0.0, 1.0 - height * height));
   return height * axis + across * (tangent_basis(axis) * Eigen::Vector2d(std::cos(turn), std::sin(turn)));
+}
+
+// What radio-thermal receivers read beside the direction; by a chance of its own, so that bearings stay what they are.
+void read_temperatures(const TargetSceneOptions& options, TargetScene& scene) {
+  std::seed_seq stream{options.seed, 3u};
+  Random random(stream);
+  std::uniform_real_distribution<double> even(options.temperature_k - 0.5 * options.temperature_span_k,
+                                              options.temperature_k + 0.5 * options.temperature_span_k);
+  std::normal_distribution<double> error(0.0, options.temperature_sigma_k);
+  for (TargetPath& path : scene.paths) path.temperature_k = even(random);
+  for (ReceiverReading& reading : scene.readings) {
+    const double true_k =
+        reading.target < 0 ? even(random) : scene.paths[static_cast<std::size_t>(reading.target)].temperature_k;
+    const double read_k = true_k + error(random);
+    if (reading.receiver > 0) reading.temperature_k = read_k;
+  }
 }
 
 class Observer {
@@ -208,19 +246,23 @@ void validate(const TargetSceneOptions& o) {
   require(o.spread_m > 0.0, "spread_m", "> 0 m", o.spread_m);
   require(o.row_spacing_m.value_or(0.0) >= 0.0, "row_spacing_m", ">= 0 m", o.row_spacing_m.value_or(0.0));
   require(o.top_speed_m_s > 0.0, "top_speed_m_s", "> 0 m/s", o.top_speed_m_s);
+  require(o.agility_m2_s3 >= 0.0, "agility_m2_s3", ">= 0 m^2/s^3", o.agility_m2_s3);
   require(o.detection_probability >= 0.0 && o.detection_probability <= 1.0, "detection_probability", "in [0, 1]",
           o.detection_probability);
+  require(o.temperature_sigma_k >= 0.0, "temperature_sigma_k", ">= 0 K", o.temperature_sigma_k);
+  require(o.temperature_span_k >= 0.0, "temperature_span_k", ">= 0 K", o.temperature_span_k);
   require(o.false_bearings >= 0.0, "false_bearings", ">= 0", o.false_bearings);
   require(o.cone_rad > 0.0 && o.cone_rad <= 6.28, "cone_rad", "in (0, 6.28] rad", o.cone_rad);
 }
 
 Vector3d position_at(const TargetPath& path, Timestamp time) {
   const double t = to_seconds(time - path.origin);
-  return path.p0_world + t * path.v_world + 0.5 * t * t * path.a_world;
+  return path.p0_world + t * path.v_world + 0.5 * t * t * path.a_world + gust_at(path, t).p_m;
 }
 
 Vector3d velocity_at(const TargetPath& path, Timestamp time) {
-  return path.v_world + to_seconds(time - path.origin) * path.a_world;
+  const double t = to_seconds(time - path.origin);
+  return path.v_world + t * path.a_world + gust_at(path, t).v_m_s;
 }
 
 TargetSceneOptions paper_table_scene(int targets, const std::vector<double>& delays_s, unsigned seed) {
@@ -247,6 +289,7 @@ TargetScene make_target_scene(const TargetSceneOptions& options) {
   for (int period = 0; period < options.periods; ++period) observer.observe(period);
   std::stable_sort(scene.readings.begin(), scene.readings.end(),
                    [](const ReceiverReading& a, const ReceiverReading& b) { return a.time < b.time; });
+  if (options.temperature_sigma_k > 0.0) read_temperatures(options, scene);
   return scene;
 }
 

@@ -40,9 +40,16 @@ struct TargetSceneOptions {
   double top_speed_m_s = 60.0;       ///< faster ones are drawn again
   double scatter_m_s = 1.0;          ///< of each coordinate of each one's velocity beside the common one
   double acceleration_m_s2 = 0.0;    ///< of each coordinate of each one's constant acceleration
+  double agility_m2_s3 = 0.0;        ///< spectral density of a white acceleration, alike along all axes, beside it
   double detection_probability = 1.0;
   double false_bearings = 0.0;  ///< mean of their (Poisson) number per receiver and period
-  double cone_rad = 0.349066;   ///< full angle of the cone about the targets' middle in which they lie evenly: 20°
+  double cone_rad =
+      0.349066;  /// What all receivers but the first read of a target's temperature errs by so much; 0: they read none.
+  double temperature_sigma_k = 0.0;
+  double temperature_k = 290.0,
+         temperature_span_k =
+             100.0;  ///< targets' and false ones' lie evenly in it about it
+                     ///< full angle of the cone about the targets' middle in which they lie evenly: 20°
   bool comes_and_goes =
       false;  ///< every second target appears after a fifth of the time, or leaves a fifth before its end
   unsigned seed = 1;
@@ -51,11 +58,21 @@ struct TargetSceneOptions {
 /// Throws std::invalid_argument naming field, value and bound.
 void validate(const TargetSceneOptions& options);
 
-/// The true path of a target: p0 + v t + a t² / 2, t from `origin`.
+/// How far gusts have carried a target off, and how much faster.
+struct GustEffect {
+  Eigen::Vector3d p_m = Eigen::Vector3d::Zero(), v_m_s = Eigen::Vector3d::Zero();
+};
+
+constexpr double kGustStep_s = 0.01;  ///< from one change of velocity to the next: finer than any look's time matters
+
+/// The true path of a target: p0 + v t + a t² / 2, t from `origin`, and what gusts add.
 struct TargetPath {
   int target = 0;  ///< 0, 1, ...
   Timestamp origin{}, birth{}, death{};
   Eigen::Vector3d p0_world, v_world, a_world;
+  double temperature_k = 290.0;
+  std::vector<GustEffect>
+      gusts{};  ///< every kGustStep_s from `origin`; after the last one, and without any: straight on
 };
 
 /// Where the target of a path is (m), and how fast (m/s); at any time.

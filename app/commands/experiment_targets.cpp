@@ -18,9 +18,9 @@ struct Part {
 };
 
 const std::vector<Part> kParts{
-    {"tables", targets_tables},
-    {"formulas", targets_formulas},
-    {"video", targets_video},
+    {"tables", targets_tables}, {"formulas", targets_formulas},   {"batch", targets_batch},
+    {"window", targets_window}, {"placement", targets_placement}, {"tracker", targets_tracker},
+    {"cue", targets_cue},       {"video", targets_video},
 };
 
 std::vector<std::string> part_names() {

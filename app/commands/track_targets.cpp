@@ -34,6 +34,8 @@ class TrackTargetsCommand : public Command {
         "video (or live camera) of each receiver, in order");
     flags.add_option("--truth", truth_, "true paths, to draw beside the tracks: truth.csv of 'simulate targets'");
     flags.add_option("--stream", stream_, kStreamHelp);
+    flags.add_flag("--cue", is_cueing_,
+                   "cues.csv: where and when each receiver can see each target, as told at each time");
     flags.add_flag("--plan", is_plan_, "no observations: how well these receivers can locate a target, over a volume");
     bind(options_, track_);
     bind(options_, plan_);
@@ -58,11 +60,15 @@ class TrackTargetsCommand : public Command {
     const TargetTrackOptions track = settled(track_, sky->frame_interval_s());
     TargetRecord record(directory, receivers);
     const auto begin = std::chrono::steady_clock::now();
-    TargetPipeline pipeline(track, record, live ? sink_of(*live, source) : TargetPipeline::LiveSink());
+    std::optional<CueFileWriter> cues;
+    if (is_cueing_) cues.emplace(directory.path("cues.csv"));
+    TargetPipeline pipeline(track, record, live ? sink_of(*live, source) : TargetPipeline::LiveSink(),
+                            cue_sink(cues ? &*cues : nullptr, live ? &*live : nullptr));
     const std::optional<InputError> fault = follow(context, *sky, pipeline);
     if (fault && record.run().targets.empty()) throw *fault;
 
     if (found_readings) found_readings->commit();
+    if (cues) cues->commit();
     TargetRun run = record.commit();
     run.tracking_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     run.source = name_of_source(source);
@@ -145,6 +151,14 @@ class TrackTargetsCommand : public Command {
     };
   }
 
+  static TargetPipeline::CueSink cue_sink(CueFileWriter* file, LiveOutput* live) {
+    if (!file) return {};
+    return [file, live](const AddressedCue& cue) {
+      file->write(cue);
+      if (live) live->send(cue_message(cue));
+    };
+  }
+
   void add_warnings(const TargetPipeline& pipeline, TargetRun& run) const {
     if (run.without_direction > 0) {
       run.warnings.push_back(fmt::format("{} readings left out: their pixels have no direction by the lens's model",
@@ -175,7 +189,7 @@ class TrackTargetsCommand : public Command {
 
   std::string receivers_, truth_, stream_;
   std::vector<std::string> observations_;
-  bool is_plan_ = false;
+  bool is_cueing_ = false, is_plan_ = false;
   TargetTrackOptions track_;
   PlanOptions plan_;
 };

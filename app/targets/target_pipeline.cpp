@@ -42,6 +42,7 @@ void validate(const TargetTrackOptions& options) {
   }
   validate(settled(options, std::nullopt).ours);
   validate(options.flight);
+  validate(SteeredReceiver{Receiver{}, options.cue.slew_rad_s, options.cue.settle_s, std::nullopt});
   validate(paper_options(options));
 }
 
@@ -77,6 +78,8 @@ void bind(OptionFields& fields, TargetTrackOptions& options) {
   fields.add("patience_periods", ours.patience_periods, "", "a target that nobody has seen so long is given up");
   fields.add("temperature_sigma_k", ours.temperature_sigma_k, "K",
              "of a reading about its target's; above 0 temperatures help to tell targets apart");
+  fields.add("cue.slew_rad_s", options.cue.slew_rad_s, "rad/s", "how fast receivers turn that are cued");
+  fields.add("cue.settle_s", options.cue.settle_s, "s", "how long they then take until they can read");
   fields.add("flight.step_s", options.flight.step_s, "s", "between the states of a flight");
   fields.add("flight.acceleration_m_s2", options.flight.acceleration_m_s2, "m/s2", "of each coordinate, typically");
   fields.add("flight.acceleration_time_s", options.flight.acceleration_time_s, "s", "how long it goes on as it does");
@@ -143,8 +146,8 @@ TargetRow row_of(const PaperTarget& target) {
   return row;
 }
 
-TargetPipeline::TargetPipeline(const TargetTrackOptions& options, TargetRecord& record, LiveSink live)
-    : options_(options), record_(record), live_(std::move(live)), tracker_(options.ours) {}
+TargetPipeline::TargetPipeline(const TargetTrackOptions& options, TargetRecord& record, LiveSink live, CueSink cue)
+    : options_(options), record_(record), live_(std::move(live)), cue_(std::move(cue)), tracker_(options.ours) {}
 
 void TargetPipeline::add(const Bearing& bearing) {
   record_.observe(bearing);
@@ -154,7 +157,7 @@ void TargetPipeline::add(const Bearing& bearing) {
   }
   if (!next_output_) next_output_ = next_live_ = bearing.time + from_seconds(options_.output_s);
   // What lies before the newest bearing is complete but for late ones.
-  while (live_ && bearing.time > *next_live_) tell_live();
+  while ((live_ || cue_) && bearing.time > *next_live_) tell_newest();
   tracker_.add(bearing);
   write_until(tracker_.now() - from_seconds(options_.ours.lag_s));
 }
@@ -168,7 +171,7 @@ void TargetPipeline::finish() {
     return;
   }
   if (!next_output_) return;
-  if (live_) tell_live();
+  if (live_ || cue_) tell_newest();
   write_until(tracker_.now());
 }
 
@@ -200,8 +203,14 @@ void TargetPipeline::write_until(Timestamp time) {
   }
 }
 
-void TargetPipeline::tell_live() {
-  live_(*next_live_, tracker_.estimates_at(*next_live_));
+void TargetPipeline::tell_newest() {
+  const std::vector<TargetEstimate> targets = tracker_.estimates_at(*next_live_);
+  if (live_) live_(*next_live_, targets);
+  if (cue_) {
+    const auto cues =
+        cues_for(record_.run().receivers, targets, *next_live_, options_.cue, options_.ours.filter.motion);
+    for (const AddressedCue& cue : cues) cue_(cue);
+  }
   *next_live_ += from_seconds(options_.output_s);
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/options_yaml.h"
+#include "app/targets/cue_file.h"
 #include "app/targets/target_record.h"
 #include "uav/flight_path.h"
 #include "uav/paper_tracker.h"
@@ -30,6 +31,7 @@ struct TargetTrackOptions {
   TargetTrackerOptions ours;
   FlightPathOptions flight;
   PaperOptions paper;
+  CueOptions cue;
 };
 
 /// Throws std::invalid_argument naming field, value and bound.
@@ -56,9 +58,11 @@ class TargetPipeline {
   /// Called with the newest estimates of all targets at every output time, before late bearings may change them; an
   /// empty function is allowed.
   using LiveSink = std::function<void(Timestamp time, const std::vector<TargetEstimate>& targets)>;
+  using CueSink = std::function<void(const AddressedCue& cue)>;
 
-  /// Refers to the record. `options`: settled.
-  TargetPipeline(const TargetTrackOptions& options, TargetRecord& record, LiveSink live);
+  /// Refers to the record. `options`: settled. `cue` is called for every receiver and target at every output time, as
+  /// soon as that is known; an empty function is allowed.
+  TargetPipeline(const TargetTrackOptions& options, TargetRecord& record, LiveSink live, CueSink cue = {});
 
   void add(const Bearing& bearing);
 
@@ -74,11 +78,12 @@ class TargetPipeline {
  private:
   void write_flight();
   void write_until(Timestamp time);
-  void tell_live();
+  void tell_newest();
 
   TargetTrackOptions options_;
   TargetRecord& record_;
   LiveSink live_;
+  CueSink cue_;
   TargetTracker tracker_;
   std::vector<Bearing> bearings_;  // of the methods that answer at the end
   std::vector<Receiver> receivers_in_operation_;

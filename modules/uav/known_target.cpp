@@ -15,8 +15,8 @@ std::span<const Bearing> until(std::span<const Bearing> bearings, Timestamp time
 }
 
 bool can_start(std::span<const Bearing> bearings, const TargetTrackerOptions& options) {
-  return bearings.size() >= static_cast<std::size_t>(options.least_sightings) &&
-         spans_two_looks(bearings.front().time, bearings.back().time, options);
+  return !bearings.empty() && has_sightings_to_start(static_cast<int>(bearings.size()), bearings.front().time,
+                                                     bearings.back().time, options);
 }
 
 std::optional<TargetState> started(std::span<const Bearing> bearings, const TargetTrackerOptions& options) {

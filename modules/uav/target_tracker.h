@@ -49,6 +49,9 @@ class TargetTracker {
   /// last lag_s may change when a late bearing comes in.
   std::vector<TargetEstimate> estimates_at(Timestamp time);
 
+  /// Bearings that are kept: of the last lags, and those that may yet start a track.
+  std::size_t remembered() const { return bearings_.size() + checkpoints_.back().book.unclaimed.size(); }
+
   /// Bearings that came too late.
   std::size_t left_out() const { return left_out_; }
 

@@ -22,7 +22,8 @@ void validate(const TargetTrackerOptions& o) {
   require(o.top_speed_m_s > 0.0, "top_speed_m_s", o.top_speed_m_s, "> 0 m/s");
   require(o.acceleration_sigma_m_s2 > 0.0, "acceleration_sigma_m_s2", o.acceleration_sigma_m_s2, "> 0 m/s^2");
   require(o.window_periods >= 1.0, "window_periods", o.window_periods, ">= 1");
-  require(o.least_sightings >= 3, "least_sightings", o.least_sightings, ">= 3");
+  require(o.least_sightings >= 5, "least_sightings", o.least_sightings, ">= 5");
+  require(o.greatest_misfit > 1.0, "greatest_misfit", o.greatest_misfit, "> 1");
   require(o.confirm_log_ratio >= o.start_log_ratio, "confirm_log_ratio", o.confirm_log_ratio, ">= start_log_ratio");
   require(o.greatest_log_ratio > 0.0, "greatest_log_ratio", o.greatest_log_ratio, "> 0");
   require(o.patience_periods > 1.5, "patience_periods", o.patience_periods, "> 1.5");

@@ -13,7 +13,7 @@ enum class ScanAssociation {
 
 struct TargetTrackerOptions {
   BearingFilterOptions filter;
-  ScanAssociation association = ScanAssociation::NearestNeighbour;
+  ScanAssociation association = ScanAssociation::Joint;
   double period_s = 1.0;  ///< in which each receiver looks at each target about once
   /// How long one look at the sky takes, s: bearings of one receiver that are nearer in time are of different targets.
   double scan_s = 0.03;
@@ -22,13 +22,16 @@ struct TargetTrackerOptions {
 
   double detection_probability = 0.9;   ///< of a target in a look
   double false_bearings_per_sr = 10.0;  ///< their mean number in a look, per steradian; 10: one in a cone of 20°
-  double gate_chi2 = 16.0;              ///< of 2 degrees of freedom; 16 loses one bearing in 3000
+  double gate_chi2 = 20.0;              ///< of 2 degrees of freedom; 20 loses one bearing in 22,000
 
   double top_speed_m_s = 60.0;  ///< of targets that appear
   /// Of each coordinate of an acceleration that is estimated (jerk_density > 0), before anything is seen.
   double acceleration_sigma_m_s2 = 3.0;
-  double window_periods = 3.0;       ///< bearings without a track are kept so long for new tracks to start from
-  int least_sightings = 5;           ///< of a new track: 4 of its equations then test the 6 unknowns
+  double window_periods = 4.0;  ///< bearings without a track are kept so long for new tracks to start from
+  /// Of a new track: 10 of its equations then test the 6 unknowns. With 6 sightings, one target in 30 among five of its
+  /// like starts from a mixture of bearings; with 8, none in 1000.
+  int least_sightings = 8;
+  double greatest_misfit = 2.5;      ///< of a new track: χ² per degree of freedom; right ones exceed it once in 200
   double start_log_ratio = 12.0;     ///< ln of how much more probable a new track is than false bearings
   double confirm_log_ratio = 25.0;   ///< the same with the sightings since: from here on it is taken for real
   double greatest_log_ratio = 15.0;  ///< that a track can live on: five misses in a row at 95 % detection

@@ -22,9 +22,9 @@ WindowOptions window_options(const TargetTrackerOptions& options) {
 
 bool is_sure(const TargetHypothesis& hypothesis, std::span<const Bearing> bearings,
              const TargetTrackerOptions& options) {
-  if (hypothesis.bearings.size() < static_cast<std::size_t>(options.least_sightings)) return false;
-  return spans_two_looks(bearings[hypothesis.bearings.front()].time, bearings[hypothesis.bearings.back()].time,
-                         options);
+  const Timestamp first = bearings[hypothesis.bearings.front()].time, last = bearings[hypothesis.bearings.back()].time;
+  return has_sightings_to_start(static_cast<int>(hypothesis.bearings.size()), first, last, options) &&
+         hypothesis.fit.chi2 <= options.greatest_misfit * hypothesis.fit.degrees;
 }
 
 TargetTrack track_of(const TargetHypothesis& hypothesis, std::span<const Bearing> of_it,
@@ -41,9 +41,12 @@ TargetTrack track_of(const TargetHypothesis& hypothesis, std::span<const Bearing
 
 }  // namespace
 
-bool spans_two_looks(Timestamp first, Timestamp last, const TargetTrackerOptions& options) {
-  constexpr double kLeastPeriods = 0.5;  // longer than the delays within one
-  return to_seconds(last - first) > kLeastPeriods * options.period_s;
+bool has_sightings_to_start(int sightings, Timestamp first, Timestamp last, const TargetTrackerOptions& options) {
+  constexpr double kThreeLooks = 1.5, kFourLooks = 2.5;  // periods; looks come one period apart, give or take a half
+  constexpr int kFewer = 2;                              // suffice where they come from many looks
+  const double periods = to_seconds(last - first) / options.period_s;
+  return (sightings >= options.least_sightings && periods > kThreeLooks) ||
+         (sightings >= options.least_sightings - kFewer && periods > kFourLooks);
 }
 
 TargetState vague_state(const TargetState& about, const Bearing& first, const TargetTrackerOptions& options) {
@@ -59,9 +62,20 @@ TargetState vague_state(const TargetState& about, const Bearing& first, const Ta
 
 TargetState start_filter(const TargetState& fit, std::span<const Bearing> bearings,
                          const TargetTrackerOptions& options) {
+  BearingFilterOptions once = options.filter;
+  once.max_iterations = 1;
   TargetState state = vague_state(moved_to(fit, bearings.front().time), bearings.front(), options);
   state.a_world.setZero();
-  return filter_bearings(state, bearings, options.filter);
+  for (const Bearing& bearing : bearings) {
+    state = predict(state, bearing.time, options.filter.motion);
+    TargetState fitted = moved_to(fit, bearing.time);
+    fitted.covariance = state.covariance;
+    auto innovation = innovation_of(fitted, bearing, options.filter.added_sigma_rad);
+    if (!innovation) continue;
+    innovation->residual += innovation->J_residual_p * (state.p_world - fitted.p_world);
+    state = absorb(state, bearing, *innovation, once);
+  }
+  return state;
 }
 
 TrackStarts start_tracks(std::vector<Bearing> bearings, const TargetTrackerOptions& options) {

@@ -14,19 +14,20 @@ struct TrackStarts {
   std::vector<Bearing> unclaimed;
 };
 
-/// Tracks of the targets that bearings in order of time tell of surely enough: start_log_ratio, least_sightings, and
-/// looks in two periods at least.
+/// Tracks of the targets that bearings in order of time tell of surely enough: start_log_ratio, greatest_misfit, and
+/// has_sightings_to_start.
 TrackStarts start_tracks(std::vector<Bearing> bearings, const TargetTrackerOptions& options);
 
-/// Whether the first and the last bearing of a target are so far apart in time that they are of two periods.
-bool spans_two_looks(Timestamp first, Timestamp last, const TargetTrackerOptions& options);
+/// Whether sightings are enough for a new track: least_sightings, spread over three looks of a receiver at least; where
+/// they are spread over four, two fewer will do.
+bool has_sightings_to_start(int sightings, Timestamp first, Timestamp last, const TargetTrackerOptions& options);
 
 /// A state that knows next to nothing, at the time and about the place of `about`: what a filter of a target starts
 /// with that `first` has seen.
 TargetState vague_state(const TargetState& about, const Bearing& first, const TargetTrackerOptions& options);
 
 /// The state of a filter over a new target's bearings in order of time. It begins knowing next to nothing about where
-/// the target is, but linearises about `fit`: a range that is hardly known would bend its first steps.
+/// the target is, but linearises all of them about `fit`: a range that is hardly known would bend its first steps.
 TargetState start_filter(const TargetState& fit, std::span<const Bearing> bearings,
                          const TargetTrackerOptions& options);
 

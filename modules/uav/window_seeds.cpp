@@ -16,8 +16,10 @@ namespace {
 constexpr std::size_t kMostScansAsked = 30;   // about a guess: enough to tell
 constexpr std::size_t kPicksPerReceiver = 6;  // scans from which guesses start, spread over the window
 constexpr std::size_t kMostTriples = 150, kMostPairs = 60;
-constexpr double kWellSeen = 0.4;           // of what a target's bearings usually gain
-constexpr std::size_t kGrownPerAnchor = 3;  // the best guesses through one bearing
+constexpr std::size_t kMostPairsTried = 1'000'000;  // a tenth of a second, in the thickest of false bearings
+constexpr double kClear = 0.8;                      // of the scans asked have a bearing near a guess: never by chance
+constexpr double kWellSeen = 0.4;                   // of what a target's bearings usually gain
+constexpr std::size_t kGrownPerAnchor = 3;          // the best guesses through one bearing
 
 struct Seed {
   Support support;
@@ -112,10 +114,11 @@ std::vector<Combination<4>> choose_pairs(const BearingWindow& window,
   return best_of(std::move(pairs), kMostPairs);
 }
 
-// In a crowd, a wrong guess is near to a bearing of someone once in five scans, and two misses in a row send it away.
-// Among the rest, one is rare: a target that was missed half the time shows.
+// In a crowd, a wrong guess is near to a bearing of someone once in five scans, and a miss at the beginning sends it
+// away: a right one that this loses has others. Among the rest, one is rare: a target that was missed half the time
+// shows.
 SupportSearch support_in(Crowd crowd, const std::vector<char>& is_free) {
-  if (crowd == Crowd::Whole) return {is_free, 0.2, -4.0, 2.0};
+  if (crowd == Crowd::Whole) return {is_free, 0.2, -2.0, 2.0};
   return {is_free, 0.01, -10.0, 0.0};
 }
 
@@ -138,47 +141,54 @@ class Search {
 
   void try_triple(const std::array<std::size_t, 3>& scans) {
     const auto rest = scans_beside(scans);
-    for_each_free(scans[0], [&](std::size_t a) {
+    any_free(scans[0], [&](std::size_t a) {
       std::vector<Seed> seeds;
-      for_each_free(scans[1], [&](std::size_t b) {
-        for_each_free(scans[2], [&](std::size_t c) {
-          consider(guess_of_three(window_, {a, b, c}), {a, b, c}, rest, seeds);
+      any_free(scans[1], [&](std::size_t b) {
+        return any_free(scans[2], [&](std::size_t c) {
+          return consider(guess_of_three(window_, {a, b, c}), {a, b, c}, rest, seeds);
         });
       });
       grow(std::move(seeds));
+      return false;
     });
   }
 
   void try_pairs(const std::array<std::size_t, 4>& scans) {
     const auto rest = scans_beside(scans);
     const auto later = meeting_pairs(scans[2], scans[3]);
-    for_each_free(scans[0], [&](std::size_t a) {
+    any_free(scans[0], [&](std::size_t a) {
       std::vector<Seed> seeds;
-      for_each_free(scans[1], [&](std::size_t b) {
-        if (!may_meet(window_, a, b)) return;
-        for (const auto& [c, d] : later) {
-          if (is_free_[c] && is_free_[d]) consider(guess_of_pairs(window_, {a, b, c, d}), {a, b, c, d}, rest, seeds);
-        }
+      any_free(scans[1], [&](std::size_t b) {
+        if (pairs_tried_ > kMostPairsTried || !may_meet(window_, a, b)) return false;
+        pairs_tried_ += later.size();
+        return std::any_of(later.begin(), later.end(), [&](const auto& pair) {
+          const auto [c, d] = pair;
+          return is_free_[c] && is_free_[d] &&
+                 consider(guess_of_pairs(window_, {a, b, c, d}), {a, b, c, d}, rest, seeds);
+        });
       });
       grow(std::move(seeds));
+      return false;
     });
   }
 
   std::vector<WindowTrack> take_tracks() { return std::move(tracks_); }
 
  private:
+  // Calls function(bearing) for each free bearing of a scan, until it returns true; whether it did.
   template <typename Function>
-  void for_each_free(std::size_t scan, Function function) {
-    for (const std::size_t bearing : window_.scans[scan].bearings) {
-      if (is_free_[bearing]) function(bearing);
-    }
+  bool any_free(std::size_t scan, Function function) {
+    const auto& bearings = window_.scans[scan].bearings;
+    return std::any_of(bearings.begin(), bearings.end(),
+                       [&](std::size_t bearing) { return is_free_[bearing] && function(bearing); });
   }
 
   std::vector<std::pair<std::size_t, std::size_t>> meeting_pairs(std::size_t one, std::size_t other) {
     std::vector<std::pair<std::size_t, std::size_t>> pairs;
-    for_each_free(one, [&](std::size_t a) {
-      for_each_free(other, [&](std::size_t b) {
+    any_free(one, [&](std::size_t a) {
+      return any_free(other, [&](std::size_t b) {
         if (may_meet(window_, a, b)) pairs.emplace_back(a, b);
+        return false;
       });
     });
     return pairs;
@@ -198,11 +208,14 @@ class Search {
     return rest;
   }
 
-  void consider(const std::optional<MotionGuess>& guess, std::initializer_list<std::size_t> bearings,
+  // Whether the guess is so clear that no other through the same bearing needs to be asked.
+  bool consider(const std::optional<MotionGuess>& guess, std::initializer_list<std::size_t> bearings,
                 std::span<const std::size_t> rest, std::vector<Seed>& seeds) {
-    if (!guess) return;
+    if (!guess) return false;
     auto support = find_support(window_, *guess, rest, support_);
-    if (support) seeds.push_back({std::move(*support), bearings});
+    if (!support) return false;
+    seeds.push_back({std::move(*support), bearings});
+    return static_cast<double>(seeds.back().support.bearings.size()) >= kClear * static_cast<double>(rest.size());
   }
 
   // The best track of a seed; its bearings are taken.
@@ -227,6 +240,7 @@ class Search {
   std::vector<char>& is_free_;
   SupportSearch support_;
   double least_log_ratio_;
+  std::size_t pairs_tried_ = 0;
   std::vector<WindowTrack> tracks_;
 };
 
