@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Cholesky>
+#include <fmt/format.h>
 
 namespace alidade {
 namespace {
@@ -94,6 +96,17 @@ std::pair<Vector7d, Normal> settle(const cv::Mat& residual, const cv::Rect& area
 }
 
 }  // namespace
+
+void validate(const DotFitOptions& o) {
+  const auto require = [](bool is_so, const char* what, double value) {
+    if (!is_so) throw std::invalid_argument(fmt::format("{}, got {}", what, value));
+  };
+  require(o.least_sigma_px > 0.0, "least_sigma_px must be > 0 px", o.least_sigma_px);
+  require(o.greatest_sigma_px > o.least_sigma_px, "greatest_sigma_px must be > least_sigma_px", o.greatest_sigma_px);
+  require(o.most_move_px > 0.0, "most_move_px must be > 0 px", o.most_move_px);
+  require(o.least_height >= 0.0, "least_height must be >= 0", o.least_height);
+  require(o.most_misfit > 0.0, "most_misfit must be > 0", o.most_misfit);
+}
 
 std::optional<FittedDot> fit_dot(const cv::Mat& residual, const DotPeak& peak, const DotFitOptions& options) {
   const int reach = static_cast<int>(std::ceil(3.0 * peak.sigma_px)) + 2;

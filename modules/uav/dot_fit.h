@@ -28,6 +28,9 @@ struct DotFitOptions {
   double most_misfit = 0.25;       ///< root mean square beside noise, in heights: an edge has 0.3 and more, a disc 0.05
 };
 
+/// Throws std::invalid_argument naming field, value and bound.
+void validate(const DotFitOptions& options);
+
 /// Least squares of a round Gaussian on a plane (brightness and its slope) to the pixels of a residual (CV_32FC1) about
 /// a peak; the noise is that of the pixels farther out. Covariance: the Cramér–Rao bound for white noise,
 /// (Jᵀ J)⁻¹ noise², with the mean squared misfit in place of noise² where that is larger. Empty where it does not

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "uav/dot_fit.h"
 
+#include <stdexcept>
+
 #include <gtest/gtest.h>
 
 #include "datasets/drawn_dot.h"
@@ -68,6 +70,12 @@ TEST(DotFit, IsEmptyWhereThereIsNoDot) {
   draw_dot(dark, {{20.0, 20.0}, 4.0, -30.0});
   EXPECT_FALSE(fit_dot(dark, {{20, 20}, {20.0, 20.0}, 1.4, 5.0}));  // the peak was bright
   EXPECT_TRUE(fit_dot(dark, {{20, 20}, {20.0, 20.0}, 1.4, -5.0}));
+}
+
+TEST(DotFit, NamesWhatIsImpossible) {
+  DotFitOptions options;
+  options.greatest_sigma_px = 0.2;
+  EXPECT_THROW(validate(options), std::invalid_argument);
 }
 
 TEST(DotFit, WorksAtTheImagesBorder) {

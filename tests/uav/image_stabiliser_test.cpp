@@ -26,7 +26,7 @@ SkySceneOptions small_options(double shake_px) {
 TEST(ImageStabiliser, FollowsTheCamerasSwayAndTurn) {
   SkyVideo video(make_sky_scene(small_options(1.2)), 0);
   ImageStabiliser stabiliser;
-  double squares = 0.0, greatest_px = 0.0;
+  double squares = 0.0, corner_squares = 0.0, greatest_px = 0.0;
   int count = 0;
   Eigen::Isometry2d T_first_steady = Eigen::Isometry2d::Identity();
   while (const auto frame = video.next()) {
@@ -41,22 +41,25 @@ TEST(ImageStabiliser, FollowsTheCamerasSwayAndTurn) {
     T_image_steady.translation() = a.pixel - T_image_steady.linear() * a.steady_pixel;
     if (count == 0) T_first_steady = T_image_steady;
     const Eigen::Isometry2d truth = T_image_steady * T_first_steady.inverse();
-    const Eigen::Vector2d middle(240.0, 135.0);
+    const Eigen::Vector2d middle(240.0, 135.0), corner(0.0, 0.0);
     squares += (*T_image_first * middle - truth * middle).squaredNorm();
+    corner_squares += (*T_image_first * corner - truth * corner).squaredNorm();
     greatest_px = std::max(greatest_px, (truth * middle - middle).norm());
     ++count;
   }
   EXPECT_LT(std::sqrt(squares / (2 * count)), 0.05);
+  EXPECT_LT(std::sqrt(corner_squares / (2 * count)), 0.1);  // the turn alone moves it by 0.3 px
   EXPECT_GT(greatest_px, 2.0);
 }
 
 TEST(ImageStabiliser, KnowsTheMeanViewAsWellAsItSays) {
   double nees = 0.0;
-  constexpr int kSeeds = 6;
+  constexpr int kSeeds = 4;
   for (unsigned seed = 1; seed <= kSeeds; ++seed) {
     SkySceneOptions options = small_options(1.2);
     options.look.seed = seed;
     options.look.shake_roll_rad = 0.0;
+    options.duration_s = 1.2;
     SkyVideo video(make_sky_scene(options), 0);
     ImageStabiliser stabiliser;
     std::optional<Eigen::Vector2d> first_sway;
@@ -70,7 +73,7 @@ TEST(ImageStabiliser, KnowsTheMeanViewAsWellAsItSays) {
     nees += 0.5 * error.dot(stabiliser.mean_covariance().inverse() * error) / kSeeds;
   }
   EXPECT_GT(nees, 0.05);  // a rough statement, on the safe side
-  EXPECT_LT(nees, 2.0);   // 12 degrees of freedom: 1.94 at 97.5 %
+  EXPECT_LT(nees, 2.2);   // 8 degrees of freedom: 2.19 at 97.5 %
 }
 
 TEST(ImageStabiliser, TakesATripodForWhatItIs) {
