@@ -97,6 +97,21 @@ Json target_message(const std::string& source, const TargetRow& target) {
   return message;
 }
 
+Json cue_message(const AddressedCue& addressed) {
+  const Cue& cue = addressed.cue;
+  const Eigen::Matrix2d& C = cue.covariance;
+  return {{"type", "cue"},
+          {"target", addressed.target},
+          {"receiver", addressed.receiver},
+          {"told_ns", nanoseconds(addressed.told)},
+          {"t_ns", nanoseconds(cue.time)},
+          {"own_t_ns", nanoseconds(cue.own_time)},
+          {"azimuth_rad", cue.azimuth_elevation[0]},
+          {"elevation_rad", cue.azimuth_elevation[1]},
+          {"covariance", {{C(0, 0), C(0, 1)}, {C(1, 0), C(1, 1)}}},
+          {"range_m", cue.range_m}};
+}
+
 Json end_message(const LiveEnd& end) {
   return {{"type", "end"}, {"frames", end.frames}, {"tracked", end.tracked}, {"interrupted", end.interrupted}};
 }

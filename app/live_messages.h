@@ -8,6 +8,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "app/body_files.h"
+#include "app/targets/cue_file.h"
 #include "capture/frame_source.h"
 #include "io/target_file.h"
 #include "marker1d/body_tracker.h"
@@ -34,6 +35,10 @@ namespace alidade {
 /// "target", of flying objects: one per target and time of output: "source", "target" (its identity), "t_ns", "state"
 ///   ("tentative", "confirmed", "coasting"), "p_world_m", "v_world_m_s", "covariance" of both (six rows of six, world
 ///   axes), "sightings", "temperature_k" and "temperature_sigma_k" where receivers read it, "sent_ns".
+/// "cue", with --cue: where "receiver" can see "target": "told_ns" (when that was known), "t_ns" and "own_t_ns" (when
+/// it
+///   will look there, by the common clock and its own), "azimuth_rad", "elevation_rad" (in its axes), "covariance" (two
+///   rows of two, rad²), "range_m", "sent_ns".
 /// "lost": "count" messages before the next one were not read in time.
 /// "end", the last line: "frames" (or batches), "tracked", "interrupted", "sent_ns".
 ///
@@ -61,6 +66,8 @@ nlohmann::ordered_json pose_message(const std::string& source, const std::string
 
 /// A target at one time.
 nlohmann::ordered_json target_message(const std::string& source, const TargetRow& target);
+
+nlohmann::ordered_json cue_message(const AddressedCue& cue);
 
 /// How a run ended.
 struct LiveEnd {

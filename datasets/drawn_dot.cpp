@@ -17,7 +17,7 @@ double covered(double x, double half) {
 
 // The share of a disc of radius r about the origin in the unit pixel about (x, y), by chords.
 double disc_share(double x, double y, double r) {
-  constexpr int kChords = 32;
+  constexpr int kChords = 64;
   double sum = 0.0;
   for (int i = 0; i < kChords; ++i) {
     const double v = y - 0.5 + (i + 0.5) / kChords;

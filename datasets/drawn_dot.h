@@ -14,7 +14,7 @@ struct DrawnDot {
 };
 
 /// Adds a dot to a picture (CV_32FC1): the disc's share of each pixel's area times its contrast, blurred by a lens of
-/// standard deviation blur_px. Its centroid is exact to 0.005 px. What lies outside the picture is left out. Throws
+/// standard deviation blur_px; exact to 1 % of the contrast. What lies outside the picture is left out. Throws
 /// std::invalid_argument for a picture of another type, and a size that is not positive.
 void draw_dot(cv::Mat& picture, const DrawnDot& dot, double blur_px = 0.0);
 

@@ -61,24 +61,73 @@ class Skyline {
   std::array<double, 7> phases_;
 };
 
-cv::Mat ground_texture(const SkyBackdropOptions& options) {
+// The ground is different in every direction that a camera may look.
+unsigned seed_of(const SkyBackdropOptions& options, double heading_rad) {
+  return options.seed + 17U * static_cast<unsigned>(std::lround(1000.0 * (heading_rad + 4.0)));
+}
+
+cv::Mat ground_texture(const SkyBackdropOptions& options, unsigned seed) {
   LeafTextureOptions leaves;
-  leaves.size_m = {10.24, 2.56};
+  leaves.size_m = {20.48, 2.56};
   leaves.texel_m = 0.01;
   leaves.smallest_m = 0.02;
   leaves.tone = cv::Vec3d::all(options.ground_grey);
-  leaves.seed = options.seed + 17;
+  leaves.seed = seed;
   cv::Mat grey, texture;
   cv::cvtColor(leaf_texture(leaves), grey, cv::COLOR_BGR2GRAY);
   grey.convertTo(texture, CV_32FC1);
   return texture;
 }
 
-// The texel of a direction on the ground: finer towards the skyline, as in perspective.
-cv::Point2f ground_texel(double azimuth_rad, double below_skyline_rad) {
-  constexpr double kNear_rad = 0.05, kRows = 70.0, kColumnsPerRad = 700.0;
-  return {static_cast<float>(kColumnsPerRad * azimuth_rad),
+// The texel of a direction on the ground, `side_rad` from where the camera looks: finer towards the skyline, as in
+// perspective.
+cv::Point2f ground_texel(double side_rad, double below_skyline_rad) {
+  constexpr double kNear_rad = 0.05, kRows = 70.0, kColumnsPerRad = 700.0, kMiddle = 1024.0;
+  return {static_cast<float>(kMiddle + kColumnsPerRad * side_rad),
           static_cast<float>(kRows * std::log1p(std::max(0.0, below_skyline_rad) / kNear_rad))};
+}
+
+// Unit directions in the world of all pixels, CV_64FC3; up where the lens has none.
+cv::Mat directions_of(const Camera& camera, const Eigen::Matrix3d& R_world_camera, int margin_px) {
+  cv::Mat directions(camera.height + 2 * margin_px, camera.width + 2 * margin_px, CV_64FC3);
+  for (int y = 0; y < directions.rows; ++y) {
+    for (int x = 0; x < directions.cols; ++x) {
+      const auto d_camera = unproject(camera, Eigen::Vector2d(x - margin_px, y - margin_px));
+      const Eigen::Vector3d d = d_camera ? Eigen::Vector3d(R_world_camera * *d_camera) : Eigen::Vector3d::UnitZ();
+      directions.at<cv::Vec3d>(y, x) = {d.x(), d.y(), d.z()};
+    }
+  }
+  return directions;
+}
+
+struct StillView {
+  cv::Mat picture;  // clear sky, and ground
+  cv::Mat ground;   // its share of each pixel
+};
+
+StillView still_view(const cv::Mat& directions, double heading_rad, const Camera& camera,
+                     const SkyBackdropOptions& options) {
+  const unsigned seed = seed_of(options, heading_rad);
+  cv::RNG random(seed);
+  const Skyline skyline(options.skyline_rad, random);
+  const cv::Size size = directions.size();
+  cv::Mat sky(size, CV_32FC1), share(size, CV_32FC1), texel_x(size, CV_32FC1), texel_y(size, CV_32FC1), ground;
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      const cv::Vec3d& d = directions.at<cv::Vec3d>(y, x);
+      const double side_rad = std::remainder(std::atan2(d[1], d[0]) - heading_rad, 2.0 * CV_PI);
+      const double above_rad = std::asin(std::clamp(d[2], -1.0, 1.0)) - skyline.elevation_rad(side_rad);
+      share.at<float>(y, x) = static_cast<float>(std::clamp(0.5 - above_rad * camera.fy, 0.0, 1.0));
+      const double height = std::sqrt(std::max(0.0, d[2]));
+      sky.at<float>(y, x) =
+          static_cast<float>(options.horizon_grey + (options.zenith_grey - options.horizon_grey) * height);
+      const cv::Point2f texel = ground_texel(side_rad, -above_rad);
+      texel_x.at<float>(y, x) = texel.x;
+      texel_y.at<float>(y, x) = texel.y;
+    }
+  }
+  cv::remap(ground_texture(options, seed), ground, texel_x, texel_y, cv::INTER_LINEAR, cv::BORDER_REFLECT);
+  return {sky + share.mul(ground - sky), share};
 }
 
 void require(bool is_so, const char* field, const char* bound, double value) {
@@ -109,32 +158,22 @@ SkyBackdrop::SkyBackdrop(const Camera& camera, const Eigen::Isometry3d& T_world_
   cv::RNG random(options.seed);
   near_texture_ = fractal_texture(random);
   far_texture_ = fractal_texture(random);
-  const Skyline skyline(options.skyline_rad, random);
-  const cv::Size size(camera.width + 2 * margin_px, camera.height + 2 * margin_px);
-  for (cv::Mat* map : {&openness_, &cloud_x_, &cloud_y_}) map->create(size, CV_32FC1);
-  cv::Mat sky(size, CV_32FC1), ground_x(size, CV_32FC1), ground_y(size, CV_32FC1), cover(size, CV_32FC1), ground;
-  for (int y = 0; y < size.height; ++y) {
-    for (int x = 0; x < size.width; ++x) {
-      const auto d_camera = unproject(camera, Eigen::Vector2d(x - margin_px, y - margin_px));
-      const Eigen::Vector3d d = T_world_camera.linear() * d_camera.value_or(Eigen::Vector3d::UnitZ());
-      const double up = std::asin(std::clamp(d.z(), -1.0, 1.0)), azimuth = std::atan2(d.y(), d.x());
-      const double above_rad = up - skyline.elevation_rad(azimuth);
-      cover.at<float>(y, x) = static_cast<float>(std::clamp(0.5 - above_rad * camera.fy, 0.0, 1.0));
-      const double height = std::sqrt(std::max(0.0, d.z()));
-      sky.at<float>(y, x) =
-          static_cast<float>(options.horizon_grey + (options.zenith_grey - options.horizon_grey) * height);
-      const cv::Point2f texel = ground_texel(azimuth, -above_rad);
-      ground_x.at<float>(y, x) = texel.x;
-      ground_y.at<float>(y, x) = texel.y;
-      const double layer =
-          kTexelsPerUnit / (std::max(0.0, d.z()) + 0.35);  // rounder than a plane: no end at the horizon
-      cloud_x_.at<float>(y, x) = static_cast<float>(layer * d.x());
-      cloud_y_.at<float>(y, x) = static_cast<float>(layer * d.y());
-      openness_.at<float>(y, x) = (1.0f - cover.at<float>(y, x)) * static_cast<float>(smooth_step(0.0, 0.25, d.z()));
+  const Eigen::Matrix3d R_world_camera = T_world_camera.linear();
+  const cv::Mat directions = directions_of(camera, R_world_camera, margin_px);
+  const StillView still =
+      still_view(directions, std::atan2(R_world_camera(1, 2), R_world_camera(0, 2)), camera, options);
+  still_ = still.picture;
+  for (cv::Mat* map : {&openness_, &cloud_x_, &cloud_y_}) map->create(directions.size(), CV_32FC1);
+  for (int y = 0; y < directions.rows; ++y) {
+    for (int x = 0; x < directions.cols; ++x) {
+      const cv::Vec3d& d = directions.at<cv::Vec3d>(y, x);
+      const double layer = kTexelsPerUnit / (std::max(0.0, d[2]) + 0.35);  // round: a plane would crowd at the horizon
+      cloud_x_.at<float>(y, x) = static_cast<float>(layer * d[0]);
+      cloud_y_.at<float>(y, x) = static_cast<float>(layer * d[1]);
+      openness_.at<float>(y, x) =
+          (1.0f - still.ground.at<float>(y, x)) * static_cast<float>(smooth_step(0.0, 0.25, d[2]));
     }
   }
-  cv::remap(ground_texture(options), ground, ground_x, ground_y, cv::INTER_LINEAR, cv::BORDER_REFLECT);
-  still_ = sky + cover.mul(ground - sky);
 }
 
 cv::Mat SkyBackdrop::clouds(double drift, const cv::Mat& texture) const {

@@ -166,6 +166,22 @@ Vector3d within_cone(const Vector3d& axis, double full_angle_rad, Random& random
   return height * axis + across * (tangent_basis(axis) * Eigen::Vector2d(std::cos(turn), std::sin(turn)));
 }
 
+// What radio-thermal receivers read beside the direction; by a chance of its own, so that bearings stay what they are.
+void read_temperatures(const TargetSceneOptions& options, TargetScene& scene) {
+  std::seed_seq stream{options.seed, 3u};
+  Random random(stream);
+  std::uniform_real_distribution<double> even(options.temperature_k - 0.5 * options.temperature_span_k,
+                                              options.temperature_k + 0.5 * options.temperature_span_k);
+  std::normal_distribution<double> error(0.0, options.temperature_sigma_k);
+  for (TargetPath& path : scene.paths) path.temperature_k = even(random);
+  for (ReceiverReading& reading : scene.readings) {
+    const double true_k =
+        reading.target < 0 ? even(random) : scene.paths[static_cast<std::size_t>(reading.target)].temperature_k;
+    const double read_k = true_k + error(random);
+    if (reading.receiver > 0) reading.temperature_k = read_k;
+  }
+}
+
 class Observer {
  public:
   Observer(const TargetSceneOptions& options, TargetScene& scene, Random& random)
@@ -233,6 +249,8 @@ void validate(const TargetSceneOptions& o) {
   require(o.agility_m2_s3 >= 0.0, "agility_m2_s3", ">= 0 m^2/s^3", o.agility_m2_s3);
   require(o.detection_probability >= 0.0 && o.detection_probability <= 1.0, "detection_probability", "in [0, 1]",
           o.detection_probability);
+  require(o.temperature_sigma_k >= 0.0, "temperature_sigma_k", ">= 0 K", o.temperature_sigma_k);
+  require(o.temperature_span_k >= 0.0, "temperature_span_k", ">= 0 K", o.temperature_span_k);
   require(o.false_bearings >= 0.0, "false_bearings", ">= 0", o.false_bearings);
   require(o.cone_rad > 0.0 && o.cone_rad <= 6.28, "cone_rad", "in (0, 6.28] rad", o.cone_rad);
 }
@@ -271,6 +289,7 @@ TargetScene make_target_scene(const TargetSceneOptions& options) {
   for (int period = 0; period < options.periods; ++period) observer.observe(period);
   std::stable_sort(scene.readings.begin(), scene.readings.end(),
                    [](const ReceiverReading& a, const ReceiverReading& b) { return a.time < b.time; });
+  if (options.temperature_sigma_k > 0.0) read_temperatures(options, scene);
   return scene;
 }
 

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "app/commands/verbs.h"
@@ -13,7 +14,9 @@
 #include "app/targets/sky_source.h"
 #include "app/targets/target_pipeline.h"
 #include "app/targets/target_report.h"
+#include "app/targets/video_sky.h"
 #include "io/receiver_file.h"
+#include "io/receiver_reading_file.h"
 
 namespace alidade {
 namespace {
@@ -25,10 +28,14 @@ class TrackTargetsCommand : public Command {
         .add_option("RECEIVERS", receivers_,
                     "receivers: our YAML, a rig of cameras, or a folder that holds observations too")
         ->required();
-    flags.add_option("OBSERVATIONS", observations_,
-                     "CSV of pixels, or of azimuth and elevation, by each receiver's own clock; -: standard input");
+    flags.add_option(
+        "OBSERVATIONS", observations_,
+        "CSV of pixels, or of azimuth and elevation, by each receiver's own clock; -: standard input; or a "
+        "video (or live camera) of each receiver, in order");
     flags.add_option("--truth", truth_, "true paths, to draw beside the tracks: truth.csv of 'simulate targets'");
     flags.add_option("--stream", stream_, kStreamHelp);
+    flags.add_flag("--cue", is_cueing_,
+                   "cues.csv: where and when each receiver can see each target, as told at each time");
     flags.add_flag("--plan", is_plan_, "no observations: how well these receivers can locate a target, over a volume");
     bind(options_, track_);
     bind(options_, plan_);
@@ -39,17 +46,29 @@ class TrackTargetsCommand : public Command {
     check(receivers);
     if (is_plan_) return plan(context, receivers);
     const std::vector<TargetRow> truth = truth_.empty() ? std::vector<TargetRow>() : read_target_rows(truth_);
-    const std::string source = observations_.empty() ? receivers_ : observations_;
+    const std::vector<std::string> sources =
+        observations_.empty() ? std::vector<std::string>{receivers_} : observations_;
+    const std::string source = fmt::format("{}", fmt::join(sources, ", "));
     std::optional<LiveOutput> live;  // before standard input has said anything
     if (!stream_.empty()) live.emplace(context, stream_, hello_message(hello(source)));
-    const auto sky = open_sky(source, receivers, context.stop);
     ResultDirectory directory(context.output, "track targets");
+    std::optional<ReceiverReadingWriter> found_readings;  // in images; else they are in a table already
+    if (shows_images(sources.front())) found_readings.emplace(directory.path("observations.csv"), receivers);
+    const ReadingSink found = [&](const ReceiverReading& reading) { found_readings->write(reading); };
+    const auto sky = found_readings ? open_videos(sources, receivers, found, context.stop)
+                                    : open_table(sources, receivers, context.stop);
+    const TargetTrackOptions track = settled(track_, sky->frame_interval_s());
     TargetRecord record(directory, receivers);
     const auto begin = std::chrono::steady_clock::now();
-    TargetPipeline pipeline(track_, record, live ? sink_of(*live, source) : TargetPipeline::LiveSink());
+    std::optional<CueFileWriter> cues;
+    if (is_cueing_) cues.emplace(directory.path("cues.csv"));
+    TargetPipeline pipeline(track, record, live ? sink_of(*live, source) : TargetPipeline::LiveSink(),
+                            cue_sink(cues ? &*cues : nullptr, live ? &*live : nullptr));
     const std::optional<InputError> fault = follow(context, *sky, pipeline);
     if (fault && record.run().targets.empty()) throw *fault;
 
+    if (found_readings) found_readings->commit();
+    if (cues) cues->commit();
     TargetRun run = record.commit();
     run.tracking_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     run.source = name_of_source(source);
@@ -59,8 +78,8 @@ class TrackTargetsCommand : public Command {
     if (fault) run.fault = fault->what();
     add_warnings(pipeline, run);
     if (live) live->end(end_message({run.bearings, static_cast<std::int64_t>(run.targets.size()), run.interrupted}));
-    const std::vector<Receiver>& found = pipeline.receivers_in_operation();
-    write_receivers(directory.path("receivers.yaml"), found.empty() ? receivers : found);
+    const std::vector<Receiver>& operated = pipeline.receivers_in_operation();
+    write_receivers(directory.path("receivers.yaml"), operated.empty() ? receivers : operated);
     write_target_report(run, truth, directory, context.arguments, options_.to_yaml());
     for (const std::string& warning : run.warnings) context.warn(warning);
     const nlohmann::json summary = summary_of(run);
@@ -79,6 +98,12 @@ class TrackTargetsCommand : public Command {
         receivers_, 0,
         fmt::format("holds {} receiver{}, wanted are {}", receivers.size(), receivers.size() == 1 ? "" : "s", least),
         "a place in space takes lines of sight from two places; add a receiver");
+  }
+
+  static std::unique_ptr<SkySource> open_table(const std::vector<std::string>& sources,
+                                               const std::vector<Receiver>& receivers, const std::stop_token& stop) {
+    if (sources.size() == 1) return open_sky(sources.front(), receivers, stop);
+    throw InputError(sources[1], 0, "one table of observations is wanted", "put all receivers' rows into one file");
   }
 
   ExitCode plan(const RunContext& context, const std::vector<Receiver>& receivers) const {
@@ -126,6 +151,14 @@ class TrackTargetsCommand : public Command {
     };
   }
 
+  static TargetPipeline::CueSink cue_sink(CueFileWriter* file, LiveOutput* live) {
+    if (!file) return {};
+    return [file, live](const AddressedCue& cue) {
+      file->write(cue);
+      if (live) live->send(cue_message(cue));
+    };
+  }
+
   void add_warnings(const TargetPipeline& pipeline, TargetRun& run) const {
     if (run.without_direction > 0) {
       run.warnings.push_back(fmt::format("{} readings left out: their pixels have no direction by the lens's model",
@@ -154,8 +187,9 @@ class TrackTargetsCommand : public Command {
     return ExitCode::NoAnswer;
   }
 
-  std::string receivers_, observations_, truth_, stream_;
-  bool is_plan_ = false;
+  std::string receivers_, truth_, stream_;
+  std::vector<std::string> observations_;
+  bool is_cueing_ = false, is_plan_ = false;
   TargetTrackOptions track_;
   PlanOptions plan_;
 };
@@ -165,6 +199,7 @@ class TrackTargetsCommand : public Command {
 Verb track_targets_verb() {
   return {"track targets", "where flying objects were, from receivers that look at different times",
           "alidade track targets receivers.yaml observations.csv -o track\n"
+          "alidade track targets rig.yaml cam0.mp4 cam1.mp4 -o track\n"
           "alidade track targets flight/ --truth flight/truth.csv --method paper-proposed -o paper\n"
           "alidade track targets receivers.yaml --plan --plan-greatest-m 200,200,100 -o plan",
           OutputUse::Required, make_command<TrackTargetsCommand>};

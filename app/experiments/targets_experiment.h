@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
+
 #include "app/experiments/experiment_section.h"
 
 namespace alidade {
@@ -15,6 +17,16 @@ ExperimentSection targets_tables(const ExperimentContext& context);
 /// The paper's formulas 12 and 13 against Monte Carlo covariances, under their own noise and under that of bearings.
 ExperimentSection targets_formulas(const ExperimentContext& context);
 
+/// The stamped batch's errors against the Cramér–Rao bound and its own covariance, by receivers and motion model.
+ExperimentSection targets_batch(const ExperimentContext& context);
+
+/// A window of bearings with misses and false ones told apart, by number of targets, probability of detection, false
+/// bearings, delays and receivers; an oracle beside.
+ExperimentSection targets_window(const ExperimentContext& context);
+
+/// The placement map's bound against Monte Carlo errors, at ten places.
+ExperimentSection targets_placement(const ExperimentContext& context);
+
 /// The recursive tracker: against the same filter with true association and against the bound; clutter, detection,
 /// spacing, receivers, order of arrival, ways of scanning.
 ExperimentSection targets_tracker(const ExperimentContext& context);
@@ -26,5 +38,9 @@ ExperimentSection targets_cue(const ExperimentContext& context);
 /// From rendered videos: detection of small moving objects by size and SNR, OpenCV's MOG2 beside it, and the chain from
 /// pixels to tracks. ExperimentContext::runs is the number of frames of each cell, in videos of 150.
 ExperimentSection targets_video(const ExperimentContext& context);
+
+/// On a recorded flight with truth (read_flight): accuracy with poses and clocks of the half on which they were fitted,
+/// delays, the spline bundle, the checks. Throws InputError where the folder is none.
+ExperimentSection targets_recording(const std::filesystem::path& recording, const ExperimentContext& context);
 
 }  // namespace alidade

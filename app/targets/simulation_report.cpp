@@ -62,23 +62,27 @@ std::int64_t count_of_false(const TargetScene& scene) {
 }  // namespace
 
 std::vector<TargetRow> truth_of(const TargetScene& scene, double rate_hz) {
-  std::vector<TargetRow> rows;
   Timestamp end{};
   for (const TargetPath& path : scene.paths) end = std::max(end, path.death);
-  for (int i = 0;; ++i) {
+  return truth_of(scene.paths, rate_hz, to_seconds(end.time_since_epoch()));
+}
+
+std::vector<TargetRow> truth_of(std::span<const TargetPath> paths, double rate_hz, double duration_s) {
+  std::vector<TargetRow> rows;
+  for (int i = 0; i < duration_s * rate_hz; ++i) {
     const Timestamp time(from_seconds(i / rate_hz));
-    if (time >= end) return rows;
-    for (const TargetPath& path : scene.paths) {
+    for (const TargetPath& path : paths) {
       if (time < path.birth || time >= path.death) continue;
       rows.push_back({time, path.target, "true", position_at(path, time), velocity_at(path, time)});
     }
   }
+  return rows;
 }
 
-Scene picture_of(const TargetScene& simulated, std::span<const TargetRow> truth) {
+Scene picture_of(std::span<const Receiver> receivers, std::span<const TargetRow> truth) {
   Scene scene;
   scene.up_world = Eigen::Vector3d::UnitZ();
-  add_receivers(simulated.receivers, receiver_size_m(simulated.receivers, box_of(truth)), scene);
+  add_receivers(receivers, receiver_size_m(receivers, box_of(truth)), scene);
   std::map<int, ScenePath> paths;
   for (const TargetRow& row : truth) paths[row.target].points_world.push_back(row.p_world);
   for (auto& [target, path] : paths) {
@@ -117,7 +121,8 @@ Report report_of(const TargetSceneOptions& options, const TargetScene& scene, st
                     {"bearings", fmt::format("{}", scene.readings.size()), "", Verdict::None, ""},
                     {"false ones", fmt::format("{}", count_of_false(scene)), "", Verdict::None, "among them"}};
   ReportSection section{"Truth", {}, {}, {}};
-  if (const auto image = draw_scene(picture_of(scene, truth), {0.9, 0.5, 1.0}, "the scene", report.warnings)) {
+  if (const auto image =
+          draw_scene(picture_of(scene.receivers, truth), {0.9, 0.5, 1.0}, "the scene", report.warnings)) {
     section.figures.push_back({*image, "", FigureFormat::Png});
   }
   const std::vector<Plot> plots{paths_from_above(truth), sightings_over_time(scene)};
@@ -125,6 +130,41 @@ Report report_of(const TargetSceneOptions& options, const TargetScene& scene, st
   report.sections.push_back(std::move(section));
   report.links = {
       {"receivers.yaml", "the receivers"}, {"observations.csv", "what they reported"}, {"truth.csv", "the true paths"}};
+  return report;
+}
+
+nlohmann::json summary_of(const SkySceneOptions& options, const SkyScene& scene,
+                          const std::vector<std::string>& videos) {
+  return {{"targets", scene.paths.size()},
+          {"receivers", scene.receivers.size()},
+          {"duration_s", options.duration_s},
+          {"videos", videos},
+          {"truth", "truth.csv"},
+          {"seed", options.seed}};
+}
+
+Report report_of(const SkyScene& scene, std::span<const TargetRow> truth, const std::vector<std::string>& videos,
+                 const std::vector<std::string>& arguments) {
+  Report report;
+  report.title = "Filmed targets";
+  report.arguments = arguments;
+  report.summary = {{"targets", fmt::format("{}", scene.paths.size()), "", Verdict::None, ""},
+                    {"cameras", fmt::format("{}", scene.receivers.size()), "", Verdict::None, ""},
+                    {"duration", fmt::format("{:g}", scene.duration_s), "s", Verdict::None, ""}};
+  ReportSection section{"Truth", {}, {}, {}};
+  if (const auto image =
+          draw_scene(picture_of(scene.receivers, truth), {0.9, 0.5, 1.0}, "the scene", report.warnings)) {
+    section.figures.push_back({*image, "", FigureFormat::Png});
+  }
+  section.figures.push_back({draw_plot(paths_from_above(truth), {960, 420}), "", FigureFormat::Png});
+  if (const auto frame = SkyVideo(scene, 0).next()) {
+    section.figures.push_back({frame->image, "the first frame of " + videos.front(), FigureFormat::Png});
+  }
+  report.sections.push_back(std::move(section));
+  report.links = {{"receivers.yaml", "the cameras"},
+                  {"truth.csv", "the true paths"},
+                  {"truth_pixels.csv", "where they truly are in the frames"}};
+  for (const std::string& video : videos) report.links.push_back({video, "lossless video"});
   return report;
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/targets/sky_source.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <map>
 #include <utility>
 
 #include "core/find_by_id.h"
@@ -14,12 +16,35 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// The median time between successive frames of each camera, and of these the longest; empty unless all are cameras.
+std::optional<double> longest_interval_s(std::span<const Receiver> receivers,
+                                         std::span<const ReceiverReading> readings) {
+  std::map<int, std::vector<Timestamp>> times;
+  for (const ReceiverReading& reading : readings) times[reading.receiver].push_back(reading.time);
+  double longest = 0.0;
+  for (const Receiver& receiver : receivers) {
+    if (!receiver.camera) return std::nullopt;
+    std::vector<Timestamp>& own = times[receiver.id];
+    std::sort(own.begin(), own.end());
+    own.erase(std::unique(own.begin(), own.end()), own.end());
+    std::vector<double> steps;
+    for (std::size_t i = 1; i < own.size(); ++i) steps.push_back(to_seconds(own[i] - own[i - 1]));
+    if (steps.empty()) continue;
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    std::nth_element(steps.begin(), middle, steps.end());
+    longest = std::max(longest, *middle);
+  }
+  if (longest <= 0.0) return std::nullopt;
+  return longest;
+}
+
 // All at once, in order.
 class RecordedSky : public SkySource {
  public:
   RecordedSky(std::span<const Receiver> receivers, std::span<const ReceiverReading> readings, std::stop_token stop)
       : bearings_(bearings_of(receivers, readings)),
         without_direction_(static_cast<std::int64_t>(readings.size() - bearings_.size())),
+        frame_interval_s_(longest_interval_s(receivers, readings)),
         stop_(std::move(stop)) {}
 
   std::optional<Bearing> next() override {
@@ -32,10 +57,12 @@ class RecordedSky : public SkySource {
   }
 
   std::int64_t without_direction() const override { return without_direction_; }
+  std::optional<double> frame_interval_s() const override { return frame_interval_s_; }
 
  private:
   std::vector<Bearing> bearings_;
   std::int64_t without_direction_;
+  std::optional<double> frame_interval_s_;
   std::stop_token stop_;
   std::size_t next_ = 0;
 };

@@ -25,6 +25,9 @@ class SkySource {
   /// How far that is.
   virtual Progress progress() const = 0;
 
+  /// The time between a camera's frames, of the slowest one; empty where receivers look as they please.
+  virtual std::optional<double> frame_interval_s() const { return std::nullopt; }
+
   /// Readings so far that have no direction: their pixels lie where the lens's model does not reach.
   virtual std::int64_t without_direction() const { return 0; }
 };

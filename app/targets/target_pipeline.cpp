@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/targets/target_pipeline.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -35,11 +36,13 @@ TargetRow row_of(const TargetState& state) {
 }  // namespace
 
 void validate(const TargetTrackOptions& options) {
-  if (!(options.output_s > 0.0)) {
-    throw std::invalid_argument(fmt::format("output_s must be > 0 s, got {}", options.output_s));
+  for (const auto& [name, value] : {std::pair("output_s", options.output_s), std::pair("period_s", options.period_s),
+                                    std::pair("scan_s", options.scan_s)}) {
+    if (!(value >= 0.0)) throw std::invalid_argument(fmt::format("{} must be >= 0 s, got {}", name, value));
   }
-  validate(options.ours);
+  validate(settled(options, std::nullopt).ours);
   validate(options.flight);
+  validate(SteeredReceiver{Receiver{}, options.cue.slew_rad_s, options.cue.settle_s, std::nullopt});
   validate(paper_options(options));
 }
 
@@ -52,10 +55,12 @@ void bind(OptionFields& fields, TargetTrackOptions& options) {
                      {"paper-proposed", TargetMethod::PaperProposed}},
                     "a recursive tracker; one target smoothed over its whole flight, with the receivers' clocks; the "
                     "UAV paper's algorithm of two receivers; its own of three");
-  fields.add("output_s", options.output_s, "s", "from one estimate to the next");
-  fields.add("period_s", ours.period_s, "s", "in which each receiver looks at each target about once");
-  fields.add("scan_s", ours.scan_s, "s",
-             "one look: a receiver's bearings that are nearer in time are of different targets");
+  fields.add("output_s", options.output_s, "s", "from one estimate to the next; 0: a period, 0.2 s at least");
+  fields.add("period_s", options.period_s, "s",
+             "in which each receiver looks at each target about once; 0: a frame of cameras, else 1 s");
+  fields.add("scan_s", options.scan_s, "s",
+             "one look: a receiver's bearings that are nearer in time are of different targets; 0: 0.4 of a camera's "
+             "frame, else 0.03 s");
   fields.add("lag_s", ours.lag_s, "s", "how late a bearing may come and still be put where it belongs");
   fields.add_choice("association", ours.association,
                     {{"nearest-neighbour", ScanAssociation::NearestNeighbour}, {"joint", ScanAssociation::Joint}},
@@ -73,6 +78,8 @@ void bind(OptionFields& fields, TargetTrackOptions& options) {
   fields.add("patience_periods", ours.patience_periods, "", "a target that nobody has seen so long is given up");
   fields.add("temperature_sigma_k", ours.temperature_sigma_k, "K",
              "of a reading about its target's; above 0 temperatures help to tell targets apart");
+  fields.add("cue.slew_rad_s", options.cue.slew_rad_s, "rad/s", "how fast receivers turn that are cued");
+  fields.add("cue.settle_s", options.cue.settle_s, "s", "how long they then take until they can read");
   fields.add("flight.step_s", options.flight.step_s, "s", "between the states of a flight");
   fields.add("flight.acceleration_m_s2", options.flight.acceleration_m_s2, "m/s2", "of each coordinate, typically");
   fields.add("flight.acceleration_time_s", options.flight.acceleration_time_s, "s", "how long it goes on as it does");
@@ -84,6 +91,23 @@ void bind(OptionFields& fields, TargetTrackOptions& options) {
   fields.add("paper.proposed_group_m", options.paper.proposed_group_m, "m", "likewise");
   fields.add("paper.shared_bearings", options.paper.shared_bearings, "", "that two objects may have in common");
   fields.add_check([&options] { validate(options); });
+}
+
+TargetTrackOptions settled(TargetTrackOptions options, std::optional<double> frame_interval_s) {
+  constexpr double kDirectionFinder_s = 1.0, kDirectionFinderScan_s = 0.03, kShareOfFrame = 0.4;
+  TargetTrackerOptions& ours = options.ours;
+  const double frame_s = frame_interval_s.value_or(kDirectionFinder_s);
+  if (options.period_s == 0.0) options.period_s = frame_s;
+  if (options.scan_s == 0.0) options.scan_s = frame_interval_s ? kShareOfFrame * frame_s : kDirectionFinderScan_s;
+  if (options.output_s == 0.0) options.output_s = std::max(0.2, options.period_s);
+  ours.period_s = options.period_s;
+  ours.scan_s = options.scan_s;
+  if (frame_interval_s) {
+    ours.least_sightings = std::max(ours.least_sightings, 9);
+    ours.window_periods = std::max(ours.window_periods, 10.0);
+    ours.patience_periods = std::max(ours.patience_periods, 20.0);
+  }
+  return options;
 }
 
 std::string describe(const TargetTrackOptions& options) {
@@ -122,8 +146,8 @@ TargetRow row_of(const PaperTarget& target) {
   return row;
 }
 
-TargetPipeline::TargetPipeline(const TargetTrackOptions& options, TargetRecord& record, LiveSink live)
-    : options_(options), record_(record), live_(std::move(live)), tracker_(options.ours) {}
+TargetPipeline::TargetPipeline(const TargetTrackOptions& options, TargetRecord& record, LiveSink live, CueSink cue)
+    : options_(options), record_(record), live_(std::move(live)), cue_(std::move(cue)), tracker_(options.ours) {}
 
 void TargetPipeline::add(const Bearing& bearing) {
   record_.observe(bearing);
@@ -133,7 +157,7 @@ void TargetPipeline::add(const Bearing& bearing) {
   }
   if (!next_output_) next_output_ = next_live_ = bearing.time + from_seconds(options_.output_s);
   // What lies before the newest bearing is complete but for late ones.
-  while (live_ && bearing.time > *next_live_) tell_live();
+  while ((live_ || cue_) && bearing.time > *next_live_) tell_newest();
   tracker_.add(bearing);
   write_until(tracker_.now() - from_seconds(options_.ours.lag_s));
 }
@@ -147,7 +171,7 @@ void TargetPipeline::finish() {
     return;
   }
   if (!next_output_) return;
-  if (live_) tell_live();
+  if (live_ || cue_) tell_newest();
   write_until(tracker_.now());
 }
 
@@ -179,8 +203,14 @@ void TargetPipeline::write_until(Timestamp time) {
   }
 }
 
-void TargetPipeline::tell_live() {
-  live_(*next_live_, tracker_.estimates_at(*next_live_));
+void TargetPipeline::tell_newest() {
+  const std::vector<TargetEstimate> targets = tracker_.estimates_at(*next_live_);
+  if (live_) live_(*next_live_, targets);
+  if (cue_) {
+    const auto cues =
+        cues_for(record_.run().receivers, targets, *next_live_, options_.cue, options_.ours.filter.motion);
+    for (const AddressedCue& cue : cues) cue_(cue);
+  }
   *next_live_ += from_seconds(options_.output_s);
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/options_yaml.h"
+#include "app/targets/cue_file.h"
 #include "app/targets/target_record.h"
 #include "uav/flight_path.h"
 #include "uav/paper_tracker.h"
@@ -24,10 +25,13 @@ enum class TargetMethod {
 
 struct TargetTrackOptions {
   TargetMethod method = TargetMethod::Ours;
-  double output_s = 1.0;  ///< from one estimate to the next
+  double output_s = 0.0;  ///< from one estimate to the next; 0: a period, 0.2 s at least
+  double period_s = 0.0;  ///< TargetTrackerOptions::period_s; 0: a frame of the slowest camera, else 1 s
+  double scan_s = 0.0;    ///< TargetTrackerOptions::scan_s; 0: 0.4 of a camera's frame, else 0.03 s
   TargetTrackerOptions ours;
   FlightPathOptions flight;
   PaperOptions paper;
+  CueOptions cue;
 };
 
 /// Throws std::invalid_argument naming field, value and bound.
@@ -35,6 +39,10 @@ void validate(const TargetTrackOptions& options);
 
 /// Binds them to flags and keys of --config. `options` must outlive `fields`.
 void bind(OptionFields& fields, TargetTrackOptions& options);
+
+/// The options with nothing left open. Of cameras, whose frames come fast, new tracks take 9 sightings out of 10 frames
+/// at least, and are given up after 20 frames at the earliest.
+TargetTrackOptions settled(TargetTrackOptions options, std::optional<double> frame_interval_s);
 
 /// One line of words for the report: how targets are found.
 std::string describe(const TargetTrackOptions& options);
@@ -50,9 +58,11 @@ class TargetPipeline {
   /// Called with the newest estimates of all targets at every output time, before late bearings may change them; an
   /// empty function is allowed.
   using LiveSink = std::function<void(Timestamp time, const std::vector<TargetEstimate>& targets)>;
+  using CueSink = std::function<void(const AddressedCue& cue)>;
 
-  /// Refers to the record.
-  TargetPipeline(const TargetTrackOptions& options, TargetRecord& record, LiveSink live);
+  /// Refers to the record. `options`: settled. `cue` is called for every receiver and target at every output time, as
+  /// soon as that is known; an empty function is allowed.
+  TargetPipeline(const TargetTrackOptions& options, TargetRecord& record, LiveSink live, CueSink cue = {});
 
   void add(const Bearing& bearing);
 
@@ -68,11 +78,12 @@ class TargetPipeline {
  private:
   void write_flight();
   void write_until(Timestamp time);
-  void tell_live();
+  void tell_newest();
 
   TargetTrackOptions options_;
   TargetRecord& record_;
   LiveSink live_;
+  CueSink cue_;
   TargetTracker tracker_;
   std::vector<Bearing> bearings_;  // of the methods that answer at the end
   std::vector<Receiver> receivers_in_operation_;

@@ -114,6 +114,10 @@ class TrackCost : public ceres::SizedCostFunction<2, kReceiverParameters> {
 
 std::vector<int> held_parameters(const ResectionOptions& options) {
   std::vector<int> held;
+  for (int i = 0; i < 3; ++i) {
+    if (!options.find_place) held.push_back(kTranslation + i);
+    if (!options.find_turn) held.push_back(kRotation + i);
+  }
   if (!options.find_rate) held.push_back(kClockRate);
   if (!options.find_readout) held.push_back(kReadout);
   if (!options.find_focal) held.push_back(kFocal);
@@ -175,7 +179,7 @@ std::optional<Spread> spread_of(const Receiver& receiver, const Readings& readin
   }
   for (const int held : held_parameters(options)) {
     H.row(held).setZero(), H.col(held).setZero();
-    H(held, held) = 1.0;
+    H(held, held) = 1.0;  // its score is 0, and so is its variance
     for (auto& [number, block] : blocks) block.score[held] = 0.0;
   }
   // Scaled to ones on the diagonal: rates and places differ by orders of magnitude.

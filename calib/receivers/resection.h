@@ -14,6 +14,8 @@ struct ResectionOptions {
   double sweep_step_s = 0.25;  ///< of the coarse sweep: at 6 m/s and 60 m, 1.4° of error at most
   int sweep_readings = 60;     ///< as many, evenly taken, are enough to tell a right offset from a wrong one
   bool keep_pose = false;      ///< starts from the given pose and clock: no sweep
+  bool find_place = true;      ///< false: it stands, and so with the next ones
+  bool find_turn = true;
   bool find_rate = true;
   bool find_readout = true;
   bool find_focal = false;   ///< a scale of both focal lengths

@@ -25,7 +25,11 @@ struct DotFitOptions {
   double greatest_sigma_px = 2.6;  ///< wider is a cloud, a bird near by or a tree: a disc of 10 px has 2.5
   double most_move_px = 2.0;       ///< of the centre from the peak
   double least_height = 2.0;       ///< of the dot, in standard deviations of a pixel's noise
+  double most_misfit = 0.25;       ///< root mean square beside noise, in heights: an edge has 0.3 and more, a disc 0.05
 };
+
+/// Throws std::invalid_argument naming field, value and bound.
+void validate(const DotFitOptions& options);
 
 /// Least squares of a round Gaussian on a plane (brightness and its slope) to the pixels of a residual (CV_32FC1) about
 /// a peak; the noise is that of the pixels farther out. Covariance: the Cramér–Rao bound for white noise,

@@ -9,8 +9,8 @@
 #include <Eigen/Cholesky>
 #include <fmt/format.h>
 
+#include "camera/static_triangulation.h"
 #include "uav/flight_model.h"
-#include "uav/static_triangulation.h"
 
 namespace alidade {
 namespace {

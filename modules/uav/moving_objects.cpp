@@ -53,6 +53,7 @@ void validate(const MovingObjectOptions& o) {
   validate(o.stabiliser);
   validate(o.background);
   validate(o.filter);
+  validate(o.fit);
   validate(o.tracks);
   if (o.warm_up_frames < 2) {
     throw std::invalid_argument(fmt::format("warm_up_frames must be >= 2, got {}", o.warm_up_frames));

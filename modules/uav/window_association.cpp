@@ -2,6 +2,8 @@
 #include "uav/window_association.h"
 
 #include <algorithm>
+#include <array>
+#include <iterator>
 #include <stdexcept>
 #include <utility>
 
@@ -14,7 +16,9 @@
 namespace alidade {
 namespace {
 
-constexpr int kRounds = 4;  // of search; the first finds nearly all, the others seek among what is left
+// The first finds nearly all; the others seek among what is left, what shows clearly first.
+constexpr std::array<SearchRound, 4> kRounds{
+    {{Crowd::Whole, 0.4}, {Crowd::Rest, 0.25}, {Crowd::Rest, 0.0}, {Crowd::Rest, 0.0}}};
 
 void require(bool is_so, const char* field, const char* bound, double value) {
   if (!is_so) throw std::invalid_argument(fmt::format("{} must be {}, got {}", field, bound, value));
@@ -67,10 +71,13 @@ std::vector<TargetHypothesis> associate_window(std::span<const Bearing> bearings
   if (bearings.empty()) return {};
   const BearingWindow window = prepare_window(bearings, options);
   std::vector<WindowTrack> tracks;
-  for (int round = 0; round < kRounds; ++round) {
+  for (const SearchRound& round : kRounds) {
     std::vector<char> is_free = free_beside(window, tracks);
-    std::vector<WindowTrack> found = find_tracks(window, round == 0 ? Crowd::Whole : Crowd::Rest, is_free);
-    if (found.empty() && round > 0) break;
+    std::vector<WindowTrack> found = find_tracks(window, round, is_free);
+    if (found.empty()) {
+      if (round.least_share > 0.0) continue;
+      break;
+    }
     std::move(found.begin(), found.end(), std::back_inserter(tracks));
     tracks = settle_tracks(window, std::move(tracks));
   }

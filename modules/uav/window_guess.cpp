@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -11,13 +12,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kGate = 4.0;               // sigma
-constexpr double kLeastSquaredSine = 1e-3;  // of the angle between a pair's lines of sight: 1.8 degrees
-constexpr double kGreatestRangeShare =
-    0.05;                          // a guess's sigma as a share of the range: beyond, its gates hold anything
-constexpr double kChance = 0.2;    // of a bearing near a wrong guess, in a crowd
-constexpr double kRefuted = -4.0;  // log-likelihood ratio: two misses at a detection probability of 0.9
-constexpr double kSupported = 2.0;
+constexpr double kGate = 4.0;                 // sigma
+constexpr double kReach = 1.2;                // of a search: angles and distances agree to that below half a radian
+constexpr std::size_t kFew = 16;              // bearings that are sooner looked at one by one
+constexpr int kPasses = 8;                    // of two pairs; two or three where delays are short
+constexpr double kSettled_m = 0.02;           // below any gate
+constexpr double kLeastSquaredSine = 1e-3;    // of the angle between a pair's lines of sight: 1.8 degrees
+constexpr double kGreatestRangeShare = 0.05;  // a guess's sigma: beyond, its gates hold anything
 
 bool is_in_range(const BearingWindow& window, double range_m) {
   return range_m > 0.0 && range_m < window.options.greatest_range_m;
@@ -77,6 +78,47 @@ double squared_distance(const BearingWindow& window, const MotionGuess& guess, s
   return (square - along * along) / variance;
 }
 
+// Calls visit(bearing, squared distance) for each free bearing of a scan within the gate, until it returns true.
+template <typename Visit>
+bool visit_near(const BearingWindow& window, const MotionGuess& guess, const WindowScan& scan,
+                const std::vector<char>& is_free, Visit visit) {
+  const auto visit_one = [&](std::size_t bearing) {
+    if (!is_free[bearing]) return false;
+    const double distance = squared_distance(window, guess, bearing);
+    return distance < kGate * kGate && visit(bearing, distance);
+  };
+  if (scan.bearings.size() <= kFew) return std::any_of(scan.bearings.begin(), scan.bearings.end(), visit_one);
+  const double dt = guess.t1_s - guess.t0_s, u = (scan.t_s - guess.t0_s) / dt;
+  const Vector3d d = guess.p0 + u * (guess.p1 - guess.p0) - window.rows[scan.bearings.front()].origin;
+  const double range = d.norm();
+  // How far off a bearing within the gate may be: the guess's error, the bearing's own, and what the scan's differ by.
+  const double variance = squared(1.0 - u) * guess.variance0_m2 + squared(u) * guess.variance1_m2;
+  const double apart = scan.origin_spread_m + scan.half_time_s / dt * (guess.p1 - guess.p0).norm();
+  const double reach = kReach * (kGate * std::sqrt(variance + squared(scan.greatest_sigma_rad * range)) + apart);
+  if (!(range > 2.0 * reach)) return std::any_of(scan.bearings.begin(), scan.bearings.end(), visit_one);
+  return scan.grid.visit_near(d / range, reach / range,
+                              [&](std::size_t place) { return visit_one(scan.bearings[place]); });
+}
+
+bool has_bearing_near(const BearingWindow& window, const MotionGuess& guess, const WindowScan& scan,
+                      const std::vector<char>& is_free) {
+  return visit_near(window, guess, scan, is_free, [](std::size_t, double) { return true; });
+}
+
+std::optional<std::size_t> nearest_bearing(const BearingWindow& window, const MotionGuess& guess,
+                                           const WindowScan& scan, const std::vector<char>& is_free) {
+  std::optional<std::size_t> nearest;
+  double least = kGate * kGate;
+  visit_near(window, guess, scan, is_free, [&](std::size_t bearing, double distance) {
+    if (distance < least) {
+      least = distance;
+      nearest = bearing;
+    }
+    return false;
+  });
+  return nearest;
+}
+
 }  // namespace
 
 std::optional<MotionGuess> guess_of_three(const BearingWindow& window, const std::array<std::size_t, 3>& bearings) {
@@ -132,12 +174,15 @@ std::optional<MotionGuess> guess_of_pairs(const BearingWindow& window, const std
   if (!(guess.t1_s > guess.t0_s)) return std::nullopt;
   Vector3d v = Vector3d::Zero();
   Meeting before, after;
-  constexpr int kPasses = 3;  // each is nearer by the share of the delay in the time between the pairs
+  const double before_s = rows[1]->t_s - rows[0]->t_s, after_s = rows[3]->t_s - rows[2]->t_s;
+  const double greatest_delay_s = std::max(std::abs(before_s), std::abs(after_s));
+  // Each pass is nearer by the share of the delay in the time between the pairs.
   for (int pass = 0; pass < kPasses; ++pass) {
-    before = meet(*rows[0], *rows[1], rows[1]->origin - v * (rows[1]->t_s - rows[0]->t_s));
-    after = meet(*rows[2], *rows[3], rows[3]->origin - v * (rows[3]->t_s - rows[2]->t_s));
+    before = meet(*rows[0], *rows[1], rows[1]->origin - v * before_s);
+    after = meet(*rows[2], *rows[3], rows[3]->origin - v * after_s);
     if (!is_place(window, before) || !is_place(window, after)) return std::nullopt;
-    v = (after.p - before.p) / (guess.t1_s - guess.t0_s);
+    const Vector3d last = std::exchange(v, (after.p - before.p) / (guess.t1_s - guess.t0_s));
+    if (pass > 0 && (v - last).norm() * greatest_delay_s < kSettled_m) break;
   }
   const double before_m2 = lateral_variance(window, bearings[0], bearings[1], before);
   const double after_m2 = lateral_variance(window, bearings[2], bearings[3], after);
@@ -159,23 +204,17 @@ std::optional<Support> find_support(const BearingWindow& window, const MotionGue
                                     std::span<const std::size_t> scans, const SupportSearch& search) {
   const double pd = window.options.detection_probability;
   const double log_hit = std::log(pd / search.chance), log_miss = std::log((1.0 - pd) / (1.0 - search.chance));
-  Support support;
+  double log_ratio = 0.0;
   for (const std::size_t s : scans) {
-    double least = kGate * kGate;
-    std::size_t nearest = 0;
-    for (const std::size_t bearing : window.scans[s].bearings) {
-      if (!search.is_free[bearing]) continue;
-      const double distance = squared_distance(window, guess, bearing);
-      if (distance >= least) continue;
-      least = distance;
-      nearest = bearing;
-    }
-    const bool is_hit = least < kGate * kGate;
-    support.log_ratio += is_hit ? log_hit : log_miss;
-    if (is_hit) support.bearings.push_back(nearest);
-    if (support.log_ratio < search.refuted) return std::nullopt;
+    log_ratio += has_bearing_near(window, guess, window.scans[s], search.is_free) ? log_hit : log_miss;
+    if (log_ratio < search.refuted) return std::nullopt;
   }
-  if (support.log_ratio < search.supported) return std::nullopt;
+  if (log_ratio < search.supported) return std::nullopt;
+  Support support{{}, log_ratio};
+  for (const std::size_t s : scans) {
+    if (const auto nearest = nearest_bearing(window, guess, window.scans[s], search.is_free))
+      support.bearings.push_back(*nearest);
+  }
   return support;
 }
 

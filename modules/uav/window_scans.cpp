@@ -37,6 +37,19 @@ void add_scans(std::span<const Bearing> bearings, BearingWindow& window) {
                    [](const WindowScan& a, const WindowScan& b) { return a.t_s < b.t_s; });
 }
 
+void sort_directions(const BearingWindow& window, WindowScan& scan) {
+  std::vector<Eigen::Vector3d> directions;
+  const Eigen::Vector3d& origin = window.rows[scan.bearings.front()].origin;
+  for (const std::size_t i : scan.bearings) {
+    const BearingRows& row = window.rows[i];
+    directions.push_back(row.direction);
+    scan.half_time_s = std::max(scan.half_time_s, std::abs(row.t_s - scan.t_s));
+    scan.origin_spread_m = std::max(scan.origin_spread_m, (row.origin - origin).norm());
+    scan.greatest_sigma_rad = std::max(scan.greatest_sigma_rad, window.sigma_rad[i]);
+  }
+  scan.grid = DirectionGrid(directions);
+}
+
 }  // namespace
 
 BearingWindow prepare_window(std::span<const Bearing> bearings, const WindowOptions& options) {
@@ -54,6 +67,7 @@ BearingWindow prepare_window(std::span<const Bearing> bearings, const WindowOpti
         std::log(options.detection_probability / (options.false_bearings_per_sr * 2.0 * std::numbers::pi * area)));
   }
   add_scans(bearings, window);
+  for (WindowScan& scan : window.scans) sort_directions(window, scan);
   window.scan_of.resize(bearings.size());
   for (std::size_t s = 0; s < window.scans.size(); ++s) {
     for (const std::size_t i : window.scans[s].bearings) window.scan_of[i] = s;

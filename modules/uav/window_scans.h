@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "uav/bearing_rows.h"
+#include "uav/direction_grid.h"
 #include "uav/window_association.h"
 
 namespace alidade {
@@ -15,6 +16,10 @@ struct WindowScan {
   int receiver = 0;
   double t_s = 0.0;                   ///< mean time of its bearings, from the window's reference
   std::vector<std::size_t> bearings;  ///< their places in the window
+  DirectionGrid grid;                 ///< of their directions, by their order here
+  double half_time_s = 0.0;           ///< by how much their times differ from t_s at most
+  double origin_spread_m = 0.0;       ///< by how much their origins differ from the first one's at most
+  double greatest_sigma_rad = 0.0;
 };
 
 /// A window of bearings, prepared.

@@ -15,9 +15,11 @@ namespace {
 
 constexpr std::size_t kMostScansAsked = 30;   // about a guess: enough to tell
 constexpr std::size_t kPicksPerReceiver = 6;  // scans from which guesses start, spread over the window
-constexpr std::size_t kMostTriples = 150, kMostPairs = 60;
-constexpr double kWellSeen = 0.4;           // of what a target's bearings usually gain
-constexpr std::size_t kGrownPerAnchor = 3;  // the best guesses through one bearing
+constexpr std::size_t kMostTriples = 150, kMostPairs = 60, kMostPairsOfTwo = 200;
+constexpr double kDelayWorth = 2.0;                 // of the time between pairs, per time within one
+constexpr std::size_t kMostPairsTried = 1'000'000;  // a tenth of a second, in the thickest of false bearings
+constexpr double kClear = 0.8;                      // of the scans asked have a bearing near a guess: never by chance
+constexpr std::size_t kGrownPerAnchor = 3;          // the best guesses through one bearing
 
 struct Seed {
   Support support;
@@ -91,94 +93,107 @@ std::size_t nearest_in_time(const BearingWindow& window, const std::vector<std::
   });
 }
 
-// Scans of two receivers at about one moment, and of the same at a later one.
+// Two receivers' scans at about one moment, and the same at a later one. Where there are but two receivers, these are
+// all the guesses that there are: of scans farther apart as well.
 std::vector<Combination<4>> choose_pairs(const BearingWindow& window,
                                          const std::vector<std::vector<std::size_t>>& picks) {
   std::vector<Combination<4>> pairs;
   const auto t_of = [&](std::size_t s) { return window.scans[s].t_s; };
+  const auto beside = [&](const std::vector<std::size_t>& scans, std::size_t s) {
+    return picks.size() == 2 ? scans : std::vector<std::size_t>{nearest_in_time(window, scans, t_of(s))};
+  };
+  const auto add = [&](std::size_t a, std::size_t b, std::size_t c, std::size_t d) {
+    const double delay = std::max(std::abs(t_of(b) - t_of(a)), std::abs(t_of(d) - t_of(c)));
+    const double worth = t_of(c) - t_of(a) - kDelayWorth * delay;
+    if (b != d && worth > 0.0) pairs.push_back({{a, b, c, d}, worth});
+  };
   for (std::size_t i = 0; i < picks.size(); ++i) {
     for (std::size_t j = i + 1; j < picks.size(); ++j) {
       for (const std::size_t a : picks[i]) {
         for (const std::size_t c : picks[i]) {
-          const std::size_t b = nearest_in_time(window, picks[j], t_of(a)),
-                            d = nearest_in_time(window, picks[j], t_of(c));
-          const double delay = std::abs(t_of(b) - t_of(a)) + std::abs(t_of(d) - t_of(c));
-          const double apart = t_of(c) - t_of(a);
-          if (b != d && apart > 2.0 * delay) pairs.push_back({{a, b, c, d}, apart - 2.0 * delay});
+          for (const std::size_t b : beside(picks[j], a)) {
+            for (const std::size_t d : beside(picks[j], c)) add(a, b, c, d);
+          }
         }
       }
     }
   }
-  return best_of(std::move(pairs), kMostPairs);
+  return best_of(std::move(pairs), picks.size() == 2 ? kMostPairsOfTwo : kMostPairs);
 }
 
-// In a crowd, a wrong guess is near to a bearing of someone once in five scans, and two misses in a row send it away.
-// Among the rest, one is rare: a target that was missed half the time shows.
+// In a crowd, a wrong guess is near to a bearing of someone once in five scans, and a miss at the beginning sends it
+// away: a right one that this loses has others. Among the rest, one is rare: a target that was missed half the time
+// shows.
 SupportSearch support_in(Crowd crowd, const std::vector<char>& is_free) {
-  if (crowd == Crowd::Whole) return {is_free, 0.2, -4.0, 2.0};
-  return {is_free, 0.01, -10.0, 0.0};
+  if (crowd == Crowd::Whole) return {is_free, 0.2, -2.0, 2.0};
+  return {is_free, 0.01, -10.0, -3.0};
 }
 
-// While all is free, a few bearings of several targets may look like one more: only what is seen often counts then.
-double least_in(Crowd crowd, const BearingWindow& window) {
-  if (crowd == Crowd::Rest) return window.options.least_log_ratio;
+double least_log_ratio_in(const SearchRound& round, const BearingWindow& window) {
   const double gain = std::accumulate(window.log_gain.begin(), window.log_gain.end(), 0.0) /
                       static_cast<double>(window.log_gain.size());
   const double usual = gain * window.options.detection_probability * static_cast<double>(window.scans.size());
-  return std::max(window.options.least_log_ratio, kWellSeen * usual);
+  return std::max(window.options.least_log_ratio, round.least_share * usual);
 }
 
 class Search {
  public:
-  Search(const BearingWindow& window, Crowd crowd, std::vector<char>& is_free)
+  Search(const BearingWindow& window, const SearchRound& round, std::vector<char>& is_free)
       : window_(window),
         is_free_(is_free),
-        support_(support_in(crowd, is_free)),
-        least_log_ratio_(least_in(crowd, window)) {}
+        support_(support_in(round.crowd, is_free)),
+        least_log_ratio_(least_log_ratio_in(round, window)) {}
 
   void try_triple(const std::array<std::size_t, 3>& scans) {
     const auto rest = scans_beside(scans);
-    for_each_free(scans[0], [&](std::size_t a) {
+    any_free(scans[0], [&](std::size_t a) {
       std::vector<Seed> seeds;
-      for_each_free(scans[1], [&](std::size_t b) {
-        for_each_free(scans[2], [&](std::size_t c) {
-          consider(guess_of_three(window_, {a, b, c}), {a, b, c}, rest, seeds);
+      any_free(scans[1], [&](std::size_t b) {
+        return any_free(scans[2], [&](std::size_t c) {
+          return consider(guess_of_three(window_, {a, b, c}), {a, b, c}, rest, seeds);
         });
       });
       grow(std::move(seeds));
+      return false;
     });
   }
 
   void try_pairs(const std::array<std::size_t, 4>& scans) {
     const auto rest = scans_beside(scans);
     const auto later = meeting_pairs(scans[2], scans[3]);
-    for_each_free(scans[0], [&](std::size_t a) {
+    any_free(scans[0], [&](std::size_t a) {
       std::vector<Seed> seeds;
-      for_each_free(scans[1], [&](std::size_t b) {
-        if (!may_meet(window_, a, b)) return;
-        for (const auto& [c, d] : later) {
-          if (is_free_[c] && is_free_[d]) consider(guess_of_pairs(window_, {a, b, c, d}), {a, b, c, d}, rest, seeds);
-        }
+      any_free(scans[1], [&](std::size_t b) {
+        if (pairs_tried_ > kMostPairsTried || !may_meet(window_, a, b)) return false;
+        pairs_tried_ += later.size();
+        return std::any_of(later.begin(), later.end(), [&](const auto& pair) {
+          const auto [c, d] = pair;
+          return is_free_[c] && is_free_[d] &&
+                 consider(guess_of_pairs(window_, {a, b, c, d}), {a, b, c, d}, rest, seeds);
+        });
       });
       grow(std::move(seeds));
+      return false;
     });
   }
 
   std::vector<WindowTrack> take_tracks() { return std::move(tracks_); }
 
  private:
+  // Calls function(bearing) for each free bearing of a scan, until it returns true; whether it did.
   template <typename Function>
-  void for_each_free(std::size_t scan, Function function) {
-    for (const std::size_t bearing : window_.scans[scan].bearings) {
-      if (is_free_[bearing]) function(bearing);
-    }
+  bool any_free(std::size_t scan, Function function) {
+    const auto& bearings = window_.scans[scan].bearings;
+    return std::any_of(bearings.begin(), bearings.end(),
+                       [&](std::size_t bearing) { return is_free_[bearing] && function(bearing); });
   }
 
   std::vector<std::pair<std::size_t, std::size_t>> meeting_pairs(std::size_t one, std::size_t other) {
     std::vector<std::pair<std::size_t, std::size_t>> pairs;
-    for_each_free(one, [&](std::size_t a) {
-      for_each_free(other, [&](std::size_t b) {
+    any_free(one, [&](std::size_t a) {
+      return any_free(other, [&](std::size_t b) {
         if (may_meet(window_, a, b)) pairs.emplace_back(a, b);
+        return false;
       });
     });
     return pairs;
@@ -198,11 +213,14 @@ class Search {
     return rest;
   }
 
-  void consider(const std::optional<MotionGuess>& guess, std::initializer_list<std::size_t> bearings,
+  // Whether the guess is so clear that no other through the same bearing needs to be asked.
+  bool consider(const std::optional<MotionGuess>& guess, std::initializer_list<std::size_t> bearings,
                 std::span<const std::size_t> rest, std::vector<Seed>& seeds) {
-    if (!guess) return;
+    if (!guess) return false;
     auto support = find_support(window_, *guess, rest, support_);
-    if (support) seeds.push_back({std::move(*support), bearings});
+    if (!support) return false;
+    seeds.push_back({std::move(*support), bearings});
+    return static_cast<double>(seeds.back().support.bearings.size()) >= kClear * static_cast<double>(rest.size());
   }
 
   // The best track of a seed; its bearings are taken.
@@ -227,14 +245,16 @@ class Search {
   std::vector<char>& is_free_;
   SupportSearch support_;
   double least_log_ratio_;
+  std::size_t pairs_tried_ = 0;
   std::vector<WindowTrack> tracks_;
 };
 
 }  // namespace
 
-std::vector<WindowTrack> find_tracks(const BearingWindow& window, Crowd crowd, std::vector<char>& is_free) {
+std::vector<WindowTrack> find_tracks(const BearingWindow& window, const SearchRound& round,
+                                     std::vector<char>& is_free) {
   const auto picks = pick_scans(window);
-  Search search(window, crowd, is_free);
+  Search search(window, round, is_free);
   for (const Combination<3>& triple : choose_triples(window, picks)) search.try_triple(triple.scans);
   for (const Combination<4>& pairs : choose_pairs(window, picks)) search.try_pairs(pairs.scans);
   return search.take_tracks();

@@ -179,6 +179,28 @@ TEST(TargetSceneOptions, AreRefusedByName) {
   EXPECT_THROW(make_target_scene(options), std::invalid_argument);
 }
 
+TEST(TargetScene, ReadsTemperaturesWithoutChangingTheBearings) {
+  TargetSceneOptions options;
+  options.false_bearings = 1.0;
+  const TargetScene without = make_target_scene(options);
+  options.temperature_sigma_k = 2.0;
+  const TargetScene with = make_target_scene(options);
+  ASSERT_EQ(with.readings.size(), without.readings.size());
+  double squares = 0.0;
+  int count = 0;
+  for (std::size_t i = 0; i < with.readings.size(); ++i) {
+    const ReceiverReading& reading = with.readings[i];
+    EXPECT_EQ(reading.value, without.readings[i].value);
+    EXPECT_EQ(reading.temperature_k.has_value(), reading.receiver > 0);
+    if (!reading.temperature_k || reading.target < 0) continue;
+    const double error = *reading.temperature_k - with.paths[static_cast<std::size_t>(reading.target)].temperature_k;
+    squares += error * error;
+    ++count;
+  }
+  ASSERT_GE(count, 20);
+  EXPECT_NEAR(std::sqrt(squares / count), 2.0, 1.0);
+}
+
 // After 4 s the variance of each coordinate is q t of the velocity and q t³ / 3 of the place: of 3,000 draws, within 4
 // standard deviations of sqrt(2 / 3000).
 TEST(TargetScene, GustsAreWhiteAcceleration) {

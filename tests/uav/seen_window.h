@@ -24,16 +24,20 @@ struct SeenWindow {
   }
 };
 
-inline SeenWindow see(int targets, unsigned seed, double detection_probability = 1.0) {
-  TargetSceneOptions options;
-  options.targets = targets;
-  options.detection_probability = detection_probability;
-  options.seed = seed;
+inline SeenWindow see(const TargetSceneOptions& options) {
   SeenWindow seen{make_target_scene(options), {}, {}, {}};
   seen.bearings = bearings_of(seen.scene);
   seen.window = prepare_window(seen.bearings, {});
   seen.is_free.assign(seen.bearings.size(), 1);
   return seen;
+}
+
+inline SeenWindow see(int targets, unsigned seed, double detection_probability = 1.0) {
+  TargetSceneOptions options;
+  options.targets = targets;
+  options.detection_probability = detection_probability;
+  options.seed = seed;
+  return see(options);
 }
 
 }  // namespace alidade

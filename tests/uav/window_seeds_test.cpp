@@ -10,14 +10,14 @@ namespace {
 
 TEST(WindowSeeds, TakeWhatTheyExplain) {
   SeenWindow seen = see(4, 2, 0.9);
-  const auto tracks = find_tracks(seen.window, Crowd::Whole, seen.is_free);
+  const auto tracks = find_tracks(seen.window, {Crowd::Whole, 0.4}, seen.is_free);
   EXPECT_EQ(tracks.size(), 4u);
   for (const WindowTrack& track : tracks) {
     for (const std::size_t bearing : track.bearing_of_scan) {
       EXPECT_TRUE(bearing == kNoBearing || !seen.is_free[bearing]);
     }
   }
-  EXPECT_TRUE(find_tracks(seen.window, Crowd::Rest, seen.is_free).empty());
+  EXPECT_TRUE(find_tracks(seen.window, {Crowd::Rest, 0.0}, seen.is_free).empty());
 }
 
 TEST(WindowSeeds, FindARareTargetAmongTheRestOnly) {
@@ -26,8 +26,8 @@ TEST(WindowSeeds, FindARareTargetAmongTheRestOnly) {
   for (std::size_t i = 0; i < seen.bearings.size(); ++i) seen.is_free[i] = i % 3 != 1 && ++kept <= 8;
   ASSERT_GE(kept, 8);
   auto is_free = seen.is_free;
-  EXPECT_TRUE(find_tracks(seen.window, Crowd::Whole, is_free).empty());
-  EXPECT_EQ(find_tracks(seen.window, Crowd::Rest, seen.is_free).size(), 1u);
+  EXPECT_TRUE(find_tracks(seen.window, {Crowd::Whole, 0.4}, is_free).empty());
+  EXPECT_EQ(find_tracks(seen.window, {Crowd::Rest, 0.0}, seen.is_free).size(), 1u);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/calib/receivers/simulated_track.h"
 #include "tests/support/simulated_flight.h"
 
 namespace alidade {
@@ -14,11 +15,7 @@ namespace {
 constexpr double kDuration_s = 200.0;
 
 KnownTrack true_track() {
-  std::vector<TimedPosition> positions;
-  for (int i = -10; i < 5 * static_cast<int>(kDuration_s) + 20; ++i) {
-    positions.push_back({Timestamp(from_seconds(0.2 * i)), test::simulated_position(0.2 * i)});
-  }
-  return KnownTrack(positions);
+  return test::simulated_track(kDuration_s);
 }
 
 std::vector<ReceiverReading> readings_of(const test::SimulatedFlight& flight, int receiver) {
@@ -87,6 +84,18 @@ TEST(Resection, CountsWhatItCannotExplain) {
   EXPECT_GT(found->wander_px, 2.0);  // a sine of 8 px is 4 px RMS in the mean of two coordinates
   EXPECT_LT(found->wander_px, 5.0);
   EXPECT_GT((*found->receiver.pose_covariance)(3, 3), std::pow(2.0 / 900.0, 2));
+}
+
+TEST(Resection, LeavesWhatStands) {
+  const auto flight = test::simulate_flight({.receivers = 1, .duration_s = kDuration_s});
+  const auto found = resect_receiver(flight.receivers[0], flight.readings, true_track(),
+                                     {.keep_pose = true, .find_place = false, .find_rate = false});
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->receiver.T_world_receiver.translation(), flight.receivers[0].T_world_receiver.translation());
+  EXPECT_EQ(found->receiver.clock.rate, 0.0);
+  EXPECT_EQ(found->focal_scale, 1.0);
+  EXPECT_EQ(found->sigma[kTranslation], 0.0);
+  EXPECT_GT(found->sigma[kRotation], 0.0);
 }
 
 TEST(Resection, IsEmptyWithTooFewReadings) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "uav/static_triangulation.h"
+#include "camera/static_triangulation.h"
 
 #include <stdexcept>
 
