@@ -59,6 +59,7 @@ JudgedFlight judged_flight(const FlightRecording& recording, const std::string& 
     }
     flight.given.push_back(with_covariances(receiver, posed->receiver));
     flight.found.push_back(found->receiver);
+    flight.focal_scales.push_back(found->focal_scale);
   }
   return flight;
 }

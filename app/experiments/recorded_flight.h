@@ -14,6 +14,7 @@ namespace alidade {
 struct JudgedFlight {
   std::vector<Receiver> given;            ///< poses and clocks of the file, covariances by resection on the first half
   std::vector<Receiver> found;            ///< resected on the first half, focal lengths too
+  std::vector<double> focal_scales;       ///< of those, by which the published focal lengths are to be multiplied
   std::vector<ReceiverReading> readings;  ///< of the second half
   std::vector<TimedPosition> first_half;  ///< the truth up to where it was used
   std::vector<TimedPosition> epochs;      ///< the truth of the second half

@@ -274,6 +274,13 @@ ExperimentSection targets_recording(const std::filesystem::path& recording, cons
                   "them. error/sigma: median error over stated standard deviation, 1 for normal errors.",
                   jumps, judged.epochs.size()));
   section.summary["jumps"] = jumps;
+  std::string scales;
+  for (std::size_t k = 0; k < judged.given.size(); ++k) {
+    scales += fmt::format("{}{} x {:.3f}", k > 0 ? ", " : "", judged.given[k].name, judged.focal_scales[k]);
+    section.summary["focal_scales"].push_back(judged.focal_scales[k]);
+  }
+  section.remarks.push_back("Focal lengths found with pose and clock on the first half, of those published: " + scales +
+                            ".");
   add_accuracy(judged, section);
   if (!context.stop.stop_requested()) add_delays(judged, section);
   if (!context.stop.stop_requested()) add_bundle(judged, section);
