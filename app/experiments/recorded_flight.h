@@ -6,7 +6,7 @@
 
 #include "datasets/flight_recording.h"
 #include "evaluation/flight_score.h"
-#include "uav/flight_path.h"
+#include "uav/flight/flight_path.h"
 
 namespace alidade {
 

@@ -9,8 +9,8 @@
 #include "datasets/target_scene.h"
 #include "evaluation/error_consistency.h"
 #include "evaluation/track_identity.h"
-#include "uav/cue.h"
-#include "uav/target_tracker.h"
+#include "uav/tracker/cue.h"
+#include "uav/tracker/target_tracker.h"
 
 namespace alidade {
 namespace {

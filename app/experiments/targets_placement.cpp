@@ -11,7 +11,7 @@
 #include "datasets/target_scene.h"
 #include "evaluation/ensemble.h"
 #include "geometry/tangent.h"
-#include "uav/placement.h"
+#include "uav/batch/placement.h"
 
 namespace alidade {
 namespace {

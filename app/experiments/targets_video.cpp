@@ -11,8 +11,8 @@
 #include "app/experiments/targets_video_chain.h"
 #include "datasets/sky_scene.h"
 #include "evaluation/detection_tally.h"
-#include "uav/mixture_blobs.h"
-#include "uav/moving_objects.h"
+#include "uav/video/mixture_blobs.h"
+#include "uav/video/moving_objects.h"
 
 namespace alidade {
 namespace {

@@ -11,7 +11,7 @@
 #include "datasets/target_scene.h"
 #include "evaluation/statistics.h"
 #include "evaluation/target_detection.h"
-#include "uav/window_association.h"
+#include "uav/window/window_association.h"
 
 namespace alidade {
 namespace {

@@ -16,7 +16,7 @@
 #include "datasets/scan_law.h"
 #include "evaluation/gospa.h"
 #include "evaluation/track_identity.h"
-#include "uav/known_target.h"
+#include "uav/tracker/known_target.h"
 
 namespace alidade {
 namespace {
