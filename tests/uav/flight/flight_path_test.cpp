@@ -57,6 +57,11 @@ TEST(FlightPath, FindsClocksThatAreOffWithoutTruth) {
   for (std::size_t k = 0; k < errors.size(); ++k) EXPECT_NEAR(middle.receivers[k].clock_s, errors[k], 0.005) << k;
   EXPECT_LT(score_of(*path, 1.0, 29.0).rms_m, 0.04);
 
+  // Four clocks of 0.05 s: their mean, which nothing tells, is known to 0.025 s, and so is when the target is anywhere.
+  EXPECT_GT(middle.receivers[0].clock_sigma_s, 0.0249);
+  const Eigen::Vector3d v = middle.state.v_world, along = v.normalized();
+  EXPECT_GT(along.dot(middle.state.covariance.topLeftCorner<3, 3>() * along), 0.99 * std::pow(0.025 * v.norm(), 2));
+
   auto sure = flight.receivers;
   for (Receiver& receiver : sure) receiver.clock.covariance.setZero();
   EXPECT_GT(score_of(*estimate_flight(sure, bearings), 1.0, 29.0).rms_m, 0.1);
