@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "flown_scene.h"
+#include "tests/uav/flown_scene.h"
 
 namespace alidade {
 namespace {

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "flown_scene.h"
+#include "tests/uav/flown_scene.h"
 
 namespace alidade {
 namespace {
