@@ -85,6 +85,16 @@ double seconds_since(Timestamp first, Timestamp time) {
   return to_seconds(time - first);
 }
 
+// Dashed lines, one of them with a name.
+void add_truth(const std::map<int, Series>& lines, Plot& plot) {
+  for (auto [target, line] : lines) {
+    line.style = SeriesStyle::Dashed;
+    line.colour = palette::kReference;
+    if (plot.series.empty()) line.name = "truth";
+    plot.series.push_back(std::move(line));
+  }
+}
+
 }  // namespace
 
 Scene scene_of(const TargetRun& run, std::span<const TargetRow> truth) {
@@ -122,17 +132,16 @@ std::vector<Plot> plots_of(const TargetRun& run, std::span<const TargetRow> trut
   Plot above{"Paths from above", "x (m)", "y (m)", {}, true, false};
   Plot height{"Height", "time (s)", "z (m)", {}, false, false};
   Plot sigma{"Standard deviation of the position", "time (s)", "sigma (m)", {}, false, true};
-  for (const auto& [target, path] : true_paths(truth)) {
-    Series line;
-    line.style = SeriesStyle::Dashed;
-    line.colour = palette::kReference;
-    if (above.series.empty()) line.name = "truth";
-    for (const Eigen::Vector3d& p : path.points_world) {
-      line.x.push_back(p.x());
-      line.y.push_back(p.y());
-    }
-    above.series.push_back(line);
+  std::map<int, Series> true_ways, true_heights;
+  for (const TargetRow& row : truth) {
+    true_ways[row.target].x.push_back(row.p_world.x());
+    true_ways[row.target].y.push_back(row.p_world.y());
+    if (row.time < run.first || row.time > run.last) continue;
+    true_heights[row.target].x.push_back(seconds_since(run.first, row.time));
+    true_heights[row.target].y.push_back(row.p_world.z());
   }
+  add_truth(true_ways, above);
+  add_truth(true_heights, height);
   std::size_t curve = 1;
   for (const int id : foremost(run)) {
     Series from_above, over_time, spread;

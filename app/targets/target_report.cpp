@@ -72,17 +72,17 @@ ReportTable table_of_receivers(const TargetRun& run) {
 
 Report report_of(const TargetRun& run, const std::optional<cv::Mat>& scene, const cv::Mat& plots) {
   Report report;
-  report.title = "Targets";
+  report.title = fmt::format("Target tracks of {}", run.source);
   report.warnings = run.warnings;
   if (run.interrupted) report.warnings.emplace_back("interrupted: the observations were not read to their end");
   if (run.fault) report.warnings.push_back("the observations could not be read to their end: " + *run.fault);
   report.summary = {
       {"targets", fmt::format("{}", run.targets.size()), "", run.targets.empty() ? Verdict::Poor : Verdict::Good, ""},
-      {"bearings", fmt::format("{}", run.bearings), "", Verdict::None, fmt::format("from {}", run.source)},
+      {"bearings", fmt::format("{}", run.bearings), "", Verdict::None, ""},
       {"duration", fmt::format("{:.1f}", to_seconds(run.last - run.first)), "s", Verdict::None, ""},
       {"method", run.method, "", Verdict::None, ""},
       {"time", fmt::format("{:.2f}", run.tracking_s), "s", Verdict::None, "to read, track and write"}};
-  ReportSection targets{"Targets", {}, {}, {}};
+  ReportSection targets{"Tracks", {}, {}, {}};
   if (scene) targets.figures.push_back({*scene, "", FigureFormat::Png});
   targets.tables.push_back(table_of(run));
   if (!plots.empty()) targets.figures.push_back({plots, "", FigureFormat::Png});

@@ -62,7 +62,7 @@ class TrackTargets(Targets):
         self.assertEqual(self.scores("out/tracks.csv", "sim"), scores)
         self.assertEqual([target["target"] for target in self.summary("out")["targets"]], [1, 2])
         page = (self.directory / "out" / "report.html").read_text(encoding="utf-8")
-        for words in ("Targets", "direction finder", "receiver3", "track targets sim --truth"):
+        for words in ("Target tracks of sim", "direction finder", "receiver3", "track targets sim --truth"):
             self.assertIn(words, page)
 
     def test_each_method_answers(self):

@@ -69,6 +69,9 @@ TEST(TargetPlots, ShowPathsHeightsAndSigmasFromTheFirstBearingOn) {
   EXPECT_EQ(plots[0].series[1].name, "");
   EXPECT_EQ(plots[0].series[3].name, "target 1");
   EXPECT_EQ(plots[0].series[4].y[7], 10.0);
+  ASSERT_EQ(plots[1].series.size(), 3u + 2u);
+  EXPECT_EQ(plots[1].series[0].name, "truth");
+  EXPECT_EQ(plots[1].series[0].x, (std::vector<double>{0.0, 1.0}));  // of the run's time alone
   const Series& height = plots[1].series.back();
   EXPECT_EQ(height.x[7], 5.0);  // the first bearing is of 2 s
   EXPECT_EQ(height.y[7], 50.0);

@@ -54,8 +54,8 @@ TEST(TargetReport, IsWrittenWithPicturesTablesAndWarnings) {
   write_target_report(run, {}, directory, {"alidade", "track", "targets"}, "lag_s: 1\n");
   directory.commit(summary_of(run));
   const std::string html = read_bytes(folder / "report/report.html");
-  for (const char* text : {"sim/observations.csv:7", "interrupted", "direction finder", "hill", "roof", "filters",
-                           "track targets", "tracks.csv"}) {
+  for (const char* text : {"Target tracks of sim/observations.csv", "sim/observations.csv:7", "interrupted",
+                           "direction finder", "hill", "roof", "filters", "track targets", "tracks.csv"}) {
     EXPECT_NE(html.find(text), std::string::npos) << text;
   }
   EXPECT_TRUE(std::filesystem::exists(folder / "report/plots.png"));
