@@ -108,7 +108,11 @@ void draw_letters(Canvas& canvas, const Scene& scene, const Viewpoint& viewpoint
   const double em = std::clamp(size.height / 42.0, 11.0, 30.0);
   for (const auto& label : scene.labels) {
     const auto at = project(camera, T_camera_world * label.p_world);
-    if (at) canvas.write(label.text, {at->pixel.x() + 0.4 * em, at->pixel.y()}, {{em}, label.colour});
+    if (!at) continue;
+    const double x = at->pixel.x(), y = at->pixel.y();
+    const bool fits = x > size.width || x + 0.4 * em + text_size(label.text, {em}).width <= size.width;
+    canvas.write(label.text, {fits ? x + 0.4 * em : x - 0.4 * em, y},
+                 {{em}, label.colour, fits ? Anchor::Left : Anchor::Right});
   }
   double y = 1.3 * em;
   const bool dark = scene.background[0] + scene.background[1] + scene.background[2] < 384;

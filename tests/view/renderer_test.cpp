@@ -238,6 +238,20 @@ TEST(RenderViewpoint, WritesTitleLegendAndLabels) {
   EXPECT_LT(cv::norm(titled(cv::Rect(150, 90, 100, 20)), cv::NORM_INF), 10);
 }
 
+TEST(RenderViewpoint, WritesALabelToTheLeftWhereItWouldRunOverTheBorder) {
+  Scene scene = black_scene();
+  Viewpoint view;
+  view.eye_world = Eigen::Vector3d::Zero();
+  view.target_world = {0, 0, 1};
+  const cv::Size size(300, 200);
+  const Eigen::Vector3d near_border = *unproject(camera_of(view, size), {290, 100});
+  scene.labels = {{near_border, "camera2", {255, 255, 255}}};
+  scene.points = {{near_border, {1, 1, 1}}};
+  const cv::Mat picture = render(scene, view, size);
+  EXPECT_GT(cv::norm(picture(cv::Rect(230, 90, 50, 20)), cv::NORM_INF), 200);
+  EXPECT_LT(cv::norm(picture(cv::Rect(291, 90, 9, 20)), cv::NORM_INF), 10);
+}
+
 TEST(Renderer, ShowReplacesTheScene) {
   Renderer renderer;
   Scene full = black_scene();
