@@ -7,8 +7,8 @@ namespace {
 void bind(OptionFields& fields, ResectionOptions& o) {
   fields.add("resection.search_s", o.search_s, "s", "how far a clock's offset may be from the given one");
   fields.add("resection.keep_pose", o.keep_pose, "", "start from the given pose and clock: nothing is searched for");
-  fields.add("resection.find_place", o.find_place, "", "off: receivers stand where they are said to stand");
-  fields.add("resection.find_turn", o.find_turn, "", "off: they look where they are said to look");
+  fields.add("resection.find_place", o.find_place, "", "where receivers stand; off: as they are said to");
+  fields.add("resection.find_turn", o.find_turn, "", "where they look; off: as they are said to");
   fields.add("resection.find_rate", o.find_rate, "", "how fast clocks run, beside their offset");
   fields.add("resection.find_readout", o.find_readout, "", "rolling shutters");
   fields.add("resection.find_focal", o.find_focal, "", "a scale of the focal lengths");

@@ -84,9 +84,9 @@ Scene scene_of(const ReceiverCalibrationRun& run) {
   add_receivers(given, size_m, scene);
   for (CameraPyramid& pyramid : scene.cameras) pyramid.colour = palette::kReference;
   scene.labels.clear();  // they are named where they are
-  scene.legend = {{"receivers as given", palette::kReference, PyramidStyle::Hollow}};
+  scene.legend = {{"calibrated receivers as given", palette::kReference, PyramidStyle::Hollow}};
   add_receivers(found, size_m, scene);
-  scene.legend.back().text = "receivers as calibrated";
+  scene.legend.back().text = "receivers now";
   scene.paths.push_back(path_of(run));
   scene.legend.push_back({run.has_truth() ? "the known path" : "the path, found with them", scene.paths.back().colour,
                           PyramidStyle::Solid});

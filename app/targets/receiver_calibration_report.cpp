@@ -43,8 +43,9 @@ ReportTable residual_table(const ReceiverCalibrationRun& run) {
   return table;
 }
 
-// A change, and its standard deviation where it is told.
+// A change, and its standard deviation where it is told; of what was not looked for that is zero.
 std::string with_sigma(double change, const std::optional<double>& sigma, int digits) {
+  if (sigma && *sigma == 0.0) return "stands";
   return sigma ? fmt::format("{:.{}f} ± {:.{}f}", change, digits, *sigma, digits)
                : fmt::format("{:.{}f}", change, digits);
 }

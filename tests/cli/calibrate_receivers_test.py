@@ -76,7 +76,8 @@ class CalibrateReceivers(ProgramTest):
             centre = (centre[0] + 0.3 * off, centre[1] - 0.2 * off, centre[2] + 0.2 * off)
             q = times(quaternion(axes), unit((1.0, 0.002 * off, -0.003 * off, 0.002 * off)))
             text += (f"  - id: {k}\n    name: cam{k}\n    model: pinhole\n    resolution_px: [2000, 2000]\n"
-                     f"    intrinsics_px: [{FOCAL_PX}, {FOCAL_PX}, {CENTRE_PX}, {CENTRE_PX}]\n    sigma_px: 0.5\n"
+                     f"    intrinsics_px: {{fx: {FOCAL_PX}, fy: {FOCAL_PX}, cx: {CENTRE_PX}, cy: {CENTRE_PX}}}\n"
+                     f"    sigma_px: 0.5\n"
                      f"    T_world_receiver: {{translation_m: {list(centre)}, quaternion_wxyz: {list(q)}}}\n"
                      f"    clock: {{offset_s: {0.3 * k + 0.04 * off}}}\n")
         return text
@@ -144,14 +145,15 @@ class CalibrateReceivers(ProgramTest):
         self.assertLess(worst_m, 1.5)  # as a whole it may be where the rough receivers are
 
     def test_a_part_can_be_used(self):
-        done = self.assert_succeeds(*self.words, "--truth", "path.csv", "--start-s", 5, "--end-s", 45, "--quiet", "-o", "out")
+        done = self.assert_succeeds(*self.words, "--truth", "path.csv", "--start-s", 5, "--end-s", 45, "--quiet",
+                                    "-o", "out")
         self.assertIn("warning: the readings span 40 s only: standard deviations may be too small", done.stderr)
         for one in self.summary("out")["receivers"]:
             self.assertLessEqual(one["readings"], 40 * RATE_HZ + 1)
 
     def test_names_a_wrong_focal_length(self):
         text = (self.directory / "true.yaml").read_text(encoding="utf-8")
-        wrong = text.replace(f"[{FOCAL_PX}, {FOCAL_PX},", "[930.0, 930.0,", 1)
+        wrong = text.replace(f"fx: {FOCAL_PX}, fy: {FOCAL_PX}", "fx: 930.0, fy: 930.0", 1)
         self.write("wrong.yaml", wrong)
         done = self.assert_succeeds("calibrate", "receivers", "wrong.yaml", "observations.csv", "--truth", "path.csv",
                                     "--quiet", "-o", "out")
@@ -166,7 +168,10 @@ class CalibrateReceivers(ProgramTest):
         finder = ("  - id: 9\n    model: direction_finder\n    sigma_rad: 0.001\n"
                   "    T_world_receiver: {translation_m: [1, 2, 3], quaternion_wxyz: [1, 0, 0, 0]}\n    clock: common\n")
         self.write("mixed.yaml", self.receivers(1.0) + finder)
-        done = self.assert_succeeds("calibrate", "receivers", "mixed.yaml", "observations.csv", "--truth", "path.csv",
+        head, *rows = (self.directory / "observations.csv").read_text(encoding="utf-8").splitlines()
+        mixed = [head + ",azimuth_rad,elevation_rad", *(row + ",," for row in rows), "1.0,9,,,0.5,0.2"]
+        self.write("mixed.csv", "\n".join(mixed) + "\n")
+        done = self.assert_succeeds("calibrate", "receivers", "mixed.yaml", "mixed.csv", "--truth", "path.csv",
                                     "--quiet", "-o", "out")
         self.assertEqual(done.stderr.strip(), "warning: receiver 9 is left as given: it is a direction finder; only "
                                               "cameras can be calibrated")
@@ -215,6 +220,18 @@ class CalibrateReceivers(ProgramTest):
         if (self.directory / "out").exists():
             self.assertTrue(self.summary("out")["interrupted"])
 
+    @staticmethod
+    def later_errors_m(tracks, truth, from_s):
+        """Of a track, at the times of the truth's rows that are near to its own."""
+        with open(truth, encoding="utf-8") as file:
+            known = {round(float(row["t"]) * 1e3): tuple(float(row[c]) for c in "xyz") for row in csv.DictReader(file)}
+        with open(tracks, encoding="utf-8") as file:
+            for row in csv.DictReader(file):
+                t_ms = int(row["t_ns"]) * 1e-6
+                p = known.get(round(t_ms))
+                if p and t_ms > from_s * 1e3:
+                    yield math.dist(p, [float(row[c]) for c in ("x_m", "y_m", "z_m")])
+
     def test_a_real_flight_gives_poses_that_hold_on_its_other_half(self):
         data = data_folder()
         if data is None or not (data / "uav").is_dir():
@@ -226,7 +243,11 @@ class CalibrateReceivers(ProgramTest):
         self.assertEqual(len(receivers), 6)
         for one in receivers:
             self.assertTrue(one["is_calibrated"], one["name"])
-            self.assertLess(one["median_px"], 6)
+            self.assertLess(one["median_px"], 7)
+        self.assert_succeeds("track", "targets", "out/receivers.yaml", flight, "--method", "flight", "-o", "track")
+        errors = list(self.later_errors_m(self.directory / "track" / "tracks.csv", flight / "groundtruth.csv", 352))
+        self.assertGreater(len(errors), 500)
+        self.assertLess(math.sqrt(sum(e * e for e in errors) / len(errors)), 0.21)
 
 
 if __name__ == "__main__":
