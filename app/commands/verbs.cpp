@@ -15,6 +15,7 @@ std::vector<Verb> all_verbs() {
           calibrate_stereo_verb(),
           calibrate_rig_verb(),
           calibrate_detectors_verb(),
+          calibrate_receivers_verb(),
           map_verb(),
           repair_verb(),
           verify_verb(),

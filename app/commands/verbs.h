@@ -22,6 +22,7 @@ Verb guide_verb();
 Verb calibrate_stereo_verb();
 Verb calibrate_rig_verb();
 Verb calibrate_detectors_verb();
+Verb calibrate_receivers_verb();
 Verb map_verb();
 Verb repair_verb();
 Verb verify_verb();
