@@ -20,7 +20,7 @@ EXPECTED = {
     "another-resolution": (BAD_INPUT, r"observations\.csv:2: pixel \(1900, 1000\) lies outside the image of 640x480 "
                                       r"px; are the receivers those of this recording, at its resolution\?"),
     "nan": (BAD_INPUT, r"observations\.csv:3: column 'azimuth_rad': 'nan' is not a finite number; "),
-    "unsorted-times": (BAD_INPUT, r"observations\.csv:\d+: time of receiver 0 goes back from .*; sort the readings by time"),
+    "unsorted-times": (BAD_INPUT, r"observations\.csv:\d+: time of receiver \d goes back from .*; sort the readings by time"),
     "empty-table": (BAD_INPUT, r"observations\.csv: is empty; its first line must name the columns"),
     "missing-table": (BAD_INPUT, r"observations\.csv: cannot be opened: No such file or directory; check the name"),
     "no-rows": (NO_ANSWER, r"holds no bearing"),
