@@ -43,15 +43,14 @@ struct TargetSceneOptions {
   double agility_m2_s3 = 0.0;        ///< spectral density of a white acceleration, alike along all axes, beside it
   double detection_probability = 1.0;
   double false_bearings = 0.0;  ///< mean of their (Poisson) number per receiver and period
-  double cone_rad =
-      0.349066;  /// What all receivers but the first read of a target's temperature errs by so much; 0: they read none.
+  /// Full angle of the cone about the targets' middle in which they lie evenly: 20°.
+  double cone_rad = 0.349066;
+  /// What all receivers but the first read of a target's temperature errs by so much; 0: they read none.
   double temperature_sigma_k = 0.0;
-  double temperature_k = 290.0,
-         temperature_span_k =
-             100.0;  ///< targets' and false ones' lie evenly in it about it
-                     ///< full angle of the cone about the targets' middle in which they lie evenly: 20°
-  bool comes_and_goes =
-      false;  ///< every second target appears after a fifth of the time, or leaves a fifth before its end
+  /// Temperatures of targets and of what is none lie evenly in a span about the first.
+  double temperature_k = 290.0, temperature_span_k = 100.0;
+  /// Every second target appears after a fifth of the time, or leaves a fifth before its end.
+  bool comes_and_goes = false;
   unsigned seed = 1;
 };
 

@@ -8,6 +8,7 @@
 #include "app/commands/verbs.h"
 #include "app/result_directory.h"
 #include "app/result_picture.h"
+#include "app/targets/target_result.h"
 #include "io/image_files.h"
 #include "io/video_writer.h"
 #include "view/renderer.h"
@@ -26,11 +27,34 @@ struct ViewOptions {
   double turn_s = 8.0;
 };
 
+// A result as it is to be drawn.
+struct SeenResult {
+  Scene scene;
+  std::vector<std::string> warnings;
+  nlohmann::json summary;
+};
+
+SeenResult see_targets(const std::filesystem::path& path, const std::filesystem::path& truth) {
+  return {read_target_scene(path, truth), {}, {{"result", path.string()}}};
+}
+
+SeenResult see_track(const std::filesystem::path& path, const std::filesystem::path& truth) {
+  const ResultPicture result = read_result_picture(path, truth);
+  return {track_scene(result.picture),
+          result.warnings,
+          {{"result", path.string()},
+           {"points", result.picture.map.points.size()},
+           {"poses", result.picture.estimate.size()},
+           {"true_poses", result.picture.truth ? result.picture.truth->size() : 0},
+           {"warnings", result.warnings}}};
+}
+
 class ViewCommand : public Command {
  public:
   explicit ViewCommand(CLI::App& flags) {
     flags.add_option("RESULT", result_, "result directory, or a trajectory file")->required();
-    flags.add_option("--truth", truth_, "trajectory to draw as the true one (default: RESULT/truth.tum)");
+    flags.add_option("--truth", truth_,
+                     "trajectory, or true paths of targets, to draw beside it (default: RESULT/truth.tum, truth.csv)");
     options_.add("azimuth_deg", view_.azimuth_deg, "deg",
                  "where to look from: 0 from behind the cameras, 90 from their right");
     options_.add("elevation_deg", view_.elevation_deg, "deg", "above the horizon of the cameras");
@@ -44,9 +68,9 @@ class ViewCommand : public Command {
   }
 
   ExitCode run(const RunContext& context) override {
-    const ResultPicture result = read_result_picture(result_, truth_);
-    for (const std::string& warning : result.warnings) context.warn(warning);
-    Scene scene = track_scene(result.picture);
+    SeenResult seen = is_target_result(result_) ? see_targets(result_, truth_) : see_track(result_, truth_);
+    for (const std::string& warning : seen.warnings) context.warn(warning);
+    Scene& scene = seen.scene;
     if (view_.point_size_px > 0) scene.point_size_px = view_.point_size_px;
     Renderer renderer;
     renderer.show(scene);
@@ -60,18 +84,13 @@ class ViewCommand : public Command {
     Report report;
     report.title = "View of " + result_.string();
     report.arguments = context.arguments;
-    report.warnings = result.warnings;
+    report.warnings = seen.warnings;
     report.options = options_.to_yaml();
     report.sections = {{"", {}, {}, {{picture, "", FigureFormat::Png}}}};
     if (view_.turntable && complete) report.links = {{"turntable.mp4", "one turn round the scene"}};
     write_report(directory.path("report.html"), report);
-    const nlohmann::json summary{{"result", result_.string()},
-                                 {"points", result.picture.map.points.size()},
-                                 {"poses", result.picture.estimate.size()},
-                                 {"true_poses", result.picture.truth ? result.picture.truth->size() : 0},
-                                 {"warnings", result.warnings}};
-    directory.commit(summary);
-    context.publish(summary);
+    directory.commit(seen.summary);
+    context.publish(seen.summary);
     context.tell(fmt::format("picture: {}", directory.final_path("scene.png").string()));
     return complete ? ExitCode::Success : ExitCode::Interrupted;
   }

@@ -9,8 +9,8 @@
 #include "datasets/target_scene.h"
 #include "evaluation/ensemble.h"
 #include "evaluation/error_consistency.h"
-#include "uav/motion_bound.h"
-#include "uav/motion_fit.h"
+#include "uav/batch/motion_bound.h"
+#include "uav/batch/motion_fit.h"
 
 namespace alidade {
 namespace {

@@ -8,8 +8,9 @@
 #include "app/experiments/targets_experiment.h"
 #include "datasets/target_scene.h"
 #include "evaluation/error_consistency.h"
-#include "uav/cue.h"
-#include "uav/target_tracker.h"
+#include "evaluation/track_identity.h"
+#include "uav/tracker/cue.h"
+#include "uav/tracker/target_tracker.h"
 
 namespace alidade {
 namespace {
@@ -68,15 +69,18 @@ void run_once(const Flight& flight, unsigned seed, std::vector<CueTally>& tallie
   for (const Bearing& bearing : bearings_of(scene.receivers, scene.readings)) {
     if (bearing.time <= told) tracker.add(bearing);
   }
-  const auto estimates = tracker.estimates_at(told);
+  auto estimates = tracker.estimates_at(told);
+  std::erase_if(estimates, [](const TargetEstimate& e) { return e.status == TargetStatus::Tentative; });
+  TargetMoment moment{told, {}, {}};
+  for (const TargetPath& path : scene.paths) moment.truth.push_back({path.target, position_at(path, told)});
+  for (const TargetEstimate& e : estimates) moment.estimates.push_back({e.id, e.state.p_world});
+  const auto estimate_of = pair_by_place(moment, kFound_m);
   const std::scoped_lock lock(mutex);
-  for (const TargetPath& path : scene.paths) {
-    const auto found = std::find_if(estimates.begin(), estimates.end(), [&](const TargetEstimate& e) {
-      return e.status != TargetStatus::Tentative && (e.state.p_world - position_at(path, told)).norm() < kFound_m;
-    });
-    if (found == estimates.end()) continue;
+  for (std::size_t k = 0; k < scene.paths.size(); ++k) {
+    if (!estimate_of[k]) continue;
     for (std::size_t i = 0; i < tallies.size(); ++i) {
-      add_cue(scene.receivers.back(), path, *found, kLeads_s[i], options.filter.motion, tallies[i]);
+      add_cue(scene.receivers.back(), scene.paths[k], estimates[*estimate_of[k]], kLeads_s[i], options.filter.motion,
+              tallies[i]);
     }
   }
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
+
 #include "app/experiments/experiment_section.h"
 
 namespace alidade {
@@ -36,5 +38,9 @@ ExperimentSection targets_cue(const ExperimentContext& context);
 /// From rendered videos: detection of small moving objects by size and SNR, OpenCV's MOG2 beside it, and the chain from
 /// pixels to tracks. ExperimentContext::runs is the number of frames of each cell, in videos of 150.
 ExperimentSection targets_video(const ExperimentContext& context);
+
+/// On a recorded flight with truth (read_flight): accuracy with poses and clocks of the half on which they were fitted,
+/// delays, the spline bundle, the checks. Throws InputError where the folder is none.
+ExperimentSection targets_recording(const std::filesystem::path& recording, const ExperimentContext& context);
 
 }  // namespace alidade

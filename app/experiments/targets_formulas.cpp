@@ -8,8 +8,8 @@
 #include "app/experiments/targets_experiment.h"
 #include "evaluation/statistics.h"
 #include "geometry/tangent.h"
-#include "uav/paper_accuracy.h"
-#include "uav/paper_geometry.h"
+#include "uav/paper/paper_accuracy.h"
+#include "uav/paper/paper_geometry.h"
 
 namespace alidade {
 namespace {

@@ -10,9 +10,9 @@
 #include "datasets/target_scene.h"
 #include "evaluation/statistics.h"
 #include "evaluation/target_detection.h"
-#include "uav/motion_bound.h"
-#include "uav/paper_tracker.h"
-#include "uav/window_association.h"
+#include "uav/batch/motion_bound.h"
+#include "uav/paper/paper_tracker.h"
+#include "uav/window/window_association.h"
 
 namespace alidade {
 namespace {

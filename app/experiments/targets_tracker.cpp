@@ -85,15 +85,18 @@ std::vector<TrackerCell> spacing_cells() {
   return cells;
 }
 
-// Straight flight, and a filter that knows it: the bound is one of all bearings together.
+// The filter knows how the targets move: straight on, or with gusts.
 std::vector<TrackerCell> receiver_cells() {
   std::vector<TrackerCell> cells;
-  for (const int receivers : {3, 4, 6}) {
-    TargetSceneOptions scene = standard_scene(2);
-    scene.comes_and_goes = false;
-    scene.receivers = receivers;
-    cells.push_back(cell_of(fmt::format("{} receivers", receivers), scene));
-    cells.back().tracker.filter.motion.acceleration_density = 0.0;
+  for (const double agility : {0.0, 0.1}) {
+    for (const int receivers : {3, 4, 6}) {
+      TargetSceneOptions scene = standard_scene(2);
+      scene.comes_and_goes = false;
+      scene.receivers = receivers;
+      scene.agility_m2_s3 = agility;
+      cells.push_back(cell_of(fmt::format("{} receivers{}", receivers, agility > 0.0 ? ", gusts" : ""), scene));
+      cells.back().tracker.filter.motion.acceleration_density = agility;
+    }
   }
   return cells;
 }
@@ -134,7 +137,7 @@ ExperimentSection targets_tracker(const ExperimentContext& context) {
       {"Answers once a period, after its last look; tentative tracks do not count. An estimate is of the target within "
        "4.2 m that is paired with it at the least sum of squares; GOSPA and OSPA with that cutoff, order 2. True "
        "association: the same filter with the bearings' labels. Bound: posterior Cramer-Rao, of the filter's motion "
-       "noise, which is more than straight flight has: RMS below it is no error.",
+       "noise; where that is more than the flight has, an RMS below it is no error.",
        "Found, given up: periods from birth and death, of 99 % of the targets and of the worst.",
        "NEES of the last period, with the 95 % bounds of its mean where it is honest."},
       {},
@@ -143,7 +146,8 @@ ExperimentSection targets_tracker(const ExperimentContext& context) {
   const bool is_done =
       add_cells(section, "20 periods, detection 0.95, half a false bearing", "standard", standard_cells(), context) &&
       add_cells(section, "Five targets 1 m apart", "spacing", spacing_cells(), context) &&
-      add_cells(section, "More receivers, straight flight", "receivers", receiver_cells(), context) &&
+      add_cells(section, "Straight flight, and gusts of 0.1 m2/s3, of which the filter knows", "receivers",
+                receiver_cells(), context) &&
       add_cells(section, "Sweeps", "sweeps", sweep_cells(), context);
   if (is_done) section.remarks.push_back("False bearings: mean number per scan in a cone of 20 degrees.");
   return section;

@@ -11,8 +11,8 @@
 #include "app/experiments/targets_video_chain.h"
 #include "datasets/sky_scene.h"
 #include "evaluation/detection_tally.h"
-#include "uav/mixture_blobs.h"
-#include "uav/moving_objects.h"
+#include "uav/video/mixture_blobs.h"
+#include "uav/video/moving_objects.h"
 
 namespace alidade {
 namespace {
@@ -217,7 +217,8 @@ ExperimentSection empty_section() {
       {"Rendered skies with drifting clouds above textured ground, 960 x 540 px, 30 frames/s, with noise of read-out "
        "and light; twelve targets fly in each video. SNR is the contrast of a target's disc over the noise of a pixel. "
        "Swaying: 0.8 px RMS and 0.24 mrad of roll, unknown to the detectors. A detection within 3 px of a target is "
-       "of it. MOG2: OpenCV's, with connected components of 2 to 150 px as blobs."},
+       "of it. MOG2: OpenCV's, with connected components of 2 to 150 px as blobs, in the frames "
+       "as they are."},
       {{"Detection by size and SNR",
         {"camera", "size (px)", "SNR", "frames", "Pd", "centre RMS (px)", "NEES / dof", "Pd of MOG2",
          "its centre RMS (px)"},

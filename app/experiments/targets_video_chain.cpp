@@ -9,8 +9,8 @@
 #include "camera/receiver.h"
 #include "datasets/sky_scene.h"
 #include "evaluation/target_scores.h"
-#include "uav/moving_objects.h"
-#include "uav/target_tracker.h"
+#include "uav/tracker/target_tracker.h"
+#include "uav/video/moving_objects.h"
 
 namespace alidade {
 namespace {

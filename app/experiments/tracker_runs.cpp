@@ -16,7 +16,7 @@
 #include "datasets/scan_law.h"
 #include "evaluation/gospa.h"
 #include "evaluation/track_identity.h"
-#include "uav/known_target.h"
+#include "uav/tracker/known_target.h"
 
 namespace alidade {
 namespace {
@@ -215,20 +215,10 @@ void add_delays(const std::vector<Run>& runs, const TargetSceneOptions& scene, T
   std::tie(score.given_up_99, score.given_up_worst) = most_of(std::move(given_up));
 }
 
-TrackerScore score_of(const std::vector<Run>& runs, const TargetSceneOptions& scene) {
-  TrackerScore score;
-  score.runs = static_cast<int>(runs.size());
-  std::vector<double> own, known, bound;
-  ErrorConsistencyTally nees;
-  double squares = 0.0, seconds = 0.0;
-  int errors = 0, moments = 0;
-  std::size_t bearings = 0;
+// Means over runs and periods.
+void add_set_metrics(const std::vector<Run>& runs, TrackerScore& score) {
+  int moments = 0;
   for (const Run& run : runs) {
-    score.switches_per_run += run.identity.switches;
-    score.false_ids_per_run += run.identity.false_ids;
-    score.purity += run.identity.purity / score.runs;
-    score.completeness += run.identity.completeness / score.runs;
-    score.moved_by_shuffling_m = std::max(score.moved_by_shuffling_m, run.moved_m);
     double sum = 0.0;
     for (const Gospa& g : run.gospa) {
       score.localisation_m2 += g.localisation;
@@ -239,23 +229,46 @@ TrackerScore score_of(const std::vector<Run>& runs, const TargetSceneOptions& sc
     }
     score.gospa_m2.push_back(sum / static_cast<double>(run.gospa.size()));
     for (const double d : run.ospa_m) score.ospa_m += d;
+  }
+  for (double* mean : {&score.localisation_m2, &score.missed_m2, &score.false_m2, &score.ospa_m}) *mean /= moments;
+  score.gospa_m = pooled_rms(score.gospa_m2);
+}
+
+void add_errors(const std::vector<Run>& runs, TrackerScore& score) {
+  std::vector<double> own, known, bound;
+  ErrorConsistencyTally nees;
+  double squares = 0.0;
+  int errors = 0;
+  for (const Run& run : runs) {
     own.push_back(run.shared_m2);
     known.push_back(run.known_m2);
     bound.push_back(run.bound_m2);
     for (const double e : run.nees) nees.add(e, 6);
     squares += run.square_m2;
     errors += run.errors;
-    seconds += run.seconds;
-    bearings += run.bearings;
   }
-  score.switches_per_run /= score.runs;
-  score.false_ids_per_run /= score.runs;
-  for (double* mean : {&score.localisation_m2, &score.missed_m2, &score.false_m2, &score.ospa_m}) *mean /= moments;
-  score.gospa_m = pooled_rms(score.gospa_m2);
   score.rms_m = std::sqrt(squares / std::max(1, errors));
   score.to_true_association = ratio_of_rms(own, known);
   score.to_bound = ratio_of_rms(own, bound);
   score.nees = nees.result();
+}
+
+TrackerScore score_of(const std::vector<Run>& runs, const TargetSceneOptions& scene) {
+  TrackerScore score;
+  score.runs = static_cast<int>(runs.size());
+  double seconds = 0.0;
+  std::size_t bearings = 0;
+  for (const Run& run : runs) {
+    score.switches_per_run += static_cast<double>(run.identity.switches) / score.runs;
+    score.false_ids_per_run += static_cast<double>(run.identity.false_ids) / score.runs;
+    score.purity += run.identity.purity / score.runs;
+    score.completeness += run.identity.completeness / score.runs;
+    score.moved_by_shuffling_m = std::max(score.moved_by_shuffling_m, run.moved_m);
+    seconds += run.seconds;
+    bearings += run.bearings;
+  }
+  add_set_metrics(runs, score);
+  add_errors(runs, score);
   add_delays(runs, scene, score);
   score.us_per_bearing = 1e6 * seconds / static_cast<double>(std::max<std::size_t>(1, bearings));
   return score;

@@ -8,7 +8,7 @@
 #include "datasets/target_scene.h"
 #include "evaluation/ensemble.h"
 #include "evaluation/error_consistency.h"
-#include "uav/target_tracker.h"
+#include "uav/tracker/target_tracker.h"
 
 namespace alidade {
 

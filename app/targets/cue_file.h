@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "io/table.h"
-#include "uav/cue.h"
-#include "uav/target_tracker.h"
+#include "uav/tracker/cue.h"
+#include "uav/tracker/target_tracker.h"
 
 namespace alidade {
 

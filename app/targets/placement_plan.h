@@ -11,7 +11,7 @@
 #include "app/options_yaml.h"
 #include "app/result_directory.h"
 #include "camera/receiver.h"
-#include "uav/placement.h"
+#include "uav/batch/placement.h"
 
 namespace alidade {
 

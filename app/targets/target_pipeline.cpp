@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "uav/receiver_clocks.h"
+#include "uav/flight/receiver_clocks.h"
 
 namespace alidade {
 namespace {

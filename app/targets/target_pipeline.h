@@ -10,9 +10,9 @@
 #include "app/options_yaml.h"
 #include "app/targets/cue_file.h"
 #include "app/targets/target_record.h"
-#include "uav/flight_path.h"
-#include "uav/paper_tracker.h"
-#include "uav/target_tracker.h"
+#include "uav/flight/flight_path.h"
+#include "uav/paper/paper_tracker.h"
+#include "uav/tracker/target_tracker.h"
 
 namespace alidade {
 

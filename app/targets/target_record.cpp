@@ -9,6 +9,17 @@
 
 namespace alidade {
 
+void TargetTally::add(const TargetRow& row) {
+  if (rows++ == 0) first = row.time;
+  last = row.time;
+  sightings = row.sightings;
+  speed_sum_m_s += row.v_world.norm();
+  if (row.covariance) position_sigma_sum_m += std::sqrt(row.covariance->topLeftCorner<3, 3>().trace());
+  temperature_k = row.temperature_k;
+  temperature_sigma_k = row.temperature_sigma_k;
+  samples.add(row);
+}
+
 TargetRecord::TargetRecord(const ResultDirectory& directory, std::vector<Receiver> receivers)
     : directory_(directory), rows_(directory.path("tracks.csv")) {
   run_.receivers = std::move(receivers);
@@ -33,16 +44,7 @@ void TargetRecord::add(const TargetRow& row) {
   pose.time = row.time;
   pose.T_world_camera.translation() = row.p_world;
   path->second.write(pose);
-
-  TargetTally& tally = run_.targets[row.target];
-  if (tally.rows++ == 0) tally.first = row.time;
-  tally.last = row.time;
-  tally.sightings = row.sightings;
-  tally.speed_sum_m_s += row.v_world.norm();
-  if (row.covariance) tally.position_sigma_sum_m += std::sqrt(row.covariance->topLeftCorner<3, 3>().trace());
-  tally.temperature_k = row.temperature_k;
-  tally.temperature_sigma_k = row.temperature_sigma_k;
-  tally.samples.add(row);
+  run_.targets[row.target].add(row);
 }
 
 TargetRun TargetRecord::commit() {

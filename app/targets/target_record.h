@@ -26,6 +26,8 @@ struct TargetTally {
   double speed_sum_m_s = 0.0;
   std::optional<double> temperature_k, temperature_sigma_k;  ///< as last told
   Thinned<TargetRow> samples{kMostSamples};
+
+  void add(const TargetRow& row);
 };
 
 /// Lines of sight of one moment, for a picture.

@@ -11,7 +11,7 @@
 
 #include "app/frame_sources.h"
 #include "core/errors.h"
-#include "uav/moving_objects.h"
+#include "uav/video/moving_objects.h"
 
 namespace alidade {
 namespace {

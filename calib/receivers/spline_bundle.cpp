@@ -189,6 +189,22 @@ std::size_t time_receiver_of(std::span<const Receiver> receivers, const SplineBu
   throw std::invalid_argument(fmt::format("time_receiver: no receiver has the id {}", *options.time_receiver));
 }
 
+// What is believed before any reading: of the path's jerk, and of how far the receivers may be off.
+void add_beliefs(ceres::Problem& problem, Unknowns& unknowns, const SplineBundleOptions& options) {
+  std::vector<Eigen::Vector3d>& c = unknowns.path.control_m;
+  const double h = options.knot_interval_s, per_unit = 1.0 / (h * h * h * options.jerk_m_s3);
+  for (std::size_t i = 0; i + 3 < c.size(); ++i) {
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<JerkCost, 3, 3, 3, 3, 3>(new JerkCost{per_unit}), nullptr,
+                             c[i].data(), c[i + 1].data(), c[i + 2].data(), c[i + 3].data());
+  }
+  const ReceiverChange prior = prior_sigma(options);
+  for (ReceiverChange& change : unknowns.changes) {
+    problem.AddResidualBlock(
+        new ceres::AutoDiffCostFunction<PriorCost, kReceiverParameters, kReceiverParameters>(new PriorCost{prior}),
+        nullptr, change.data());
+  }
+}
+
 int solve(std::span<const Receiver> receivers, const std::vector<Sight>& sights, const SplineBundleOptions& options,
           Unknowns& unknowns) {
   FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres tells of its steps whatever its own logging_type
@@ -199,12 +215,6 @@ int solve(std::span<const Receiver> receivers, const std::vector<Sight>& sights,
   ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem problem(ownership);
   const double h = options.knot_interval_s;
-  const double per_unit = 1.0 / (h * h * h * options.jerk_m_s3);
-  for (std::size_t i = 0; i + 3 < path.control_m.size(); ++i) {
-    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<JerkCost, 3, 3, 3, 3, 3>(new JerkCost{per_unit}), nullptr,
-                             path.control_m[i].data(), path.control_m[i + 1].data(), path.control_m[i + 2].data(),
-                             path.control_m[i + 3].data());
-  }
   for (const Sight& sight : sights) {
     const Receiver& receiver = receivers[sight.receiver];
     ReceiverChange& change = unknowns.changes[sight.receiver];
@@ -214,13 +224,8 @@ int solve(std::span<const Receiver> receivers, const std::vector<Sight>& sights,
         &loss, path.control_m[i].data(), path.control_m[i + 1].data(), path.control_m[i + 2].data(),
         path.control_m[i + 3].data(), change.data());
   }
-  const ReceiverChange prior = prior_sigma(options);
-  for (ReceiverChange& change : unknowns.changes) {
-    problem.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<PriorCost, kReceiverParameters, kReceiverParameters>(new PriorCost{prior}),
-        nullptr, change.data());
-  }
-  hold_what_stands(problem, unknowns, prior, time_receiver_of(receivers, options));
+  add_beliefs(problem, unknowns, options);
+  hold_what_stands(problem, unknowns, prior_sigma(options), time_receiver_of(receivers, options));
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   solver.max_num_iterations = 30;

@@ -5,9 +5,9 @@
 
 #include "camera/receiver.h"
 #include "datasets/target_scene.h"
-#include "uav/motion_fit.h"
-#include "uav/placement.h"
-#include "uav/window_association.h"
+#include "uav/batch/motion_fit.h"
+#include "uav/batch/placement.h"
+#include "uav/window/window_association.h"
 
 namespace alidade {
 namespace {

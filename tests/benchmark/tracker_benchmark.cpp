@@ -5,9 +5,9 @@
 #include <benchmark/benchmark.h>
 
 #include "datasets/target_scene.h"
-#include "uav/scan_association.h"
-#include "uav/target_tracker.h"
-#include "uav/track_book.h"
+#include "uav/tracker/scan_association.h"
+#include "uav/tracker/target_tracker.h"
+#include "uav/tracker/track_book.h"
 
 namespace alidade {
 namespace {

@@ -130,6 +130,22 @@ class ExperimentOnTargets(ProgramTest):
         for one in result["several"].values():
             self.assertAlmostEqual(one["white"], 1, delta=0.03)
 
+    def test_the_tracker_does_not_mind_the_order_of_arrival(self):
+        self.assert_succeeds(*self.words, "tracker", "--runs", "10", "-o", "out")
+        result = self.summary("out")["tracker"]
+        for targets in ("2 targets", "5 targets"):
+            in_order, shuffled = (result["standard"][name] for name in (targets, f"{targets}, shuffled within 1 s"))
+            self.assertLess(shuffled["moved_by_shuffling_m"], 1e-9)
+            self.assertEqual(shuffled["rms_m"], in_order["rms_m"])
+            self.assertLess(in_order["to_true_association"], 1.1)
+        self.assertEqual(len(result["sweeps"]), 8)
+
+    def test_cues_hold_their_covariance(self):
+        self.assert_succeeds(*self.words, "cue", "--runs", "100", "-o", "out")
+        for flight in self.summary("out")["cue"].values():
+            self.assertGreater(flight["1"]["within_95"], 0.88)
+            self.assertGreater(flight["1"]["rms_mrad"], flight["0.1"]["rms_mrad"])
+
     def test_refuses_too_few_runs(self):
         self.assert_refuses(["experiment", "targets", "--runs", "5"], "runs must be >= 10, got 5")
 

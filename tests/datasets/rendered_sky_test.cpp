@@ -49,6 +49,7 @@ TEST(SkyVideo, DrawsDotsAsBrightOverTheNoiseAsTheirSnrSays) {
   SkySceneOptions options = small_options();
   options.receivers = 1;
   options.dots = {{6.0, 12.0, true}, {6.0, 20.0, false}};
+  options.look.shake_px = 2.5;  // they sway with the picture
   SkyScene scene = make_sky_scene(options), bare = scene;
   bare.paths.clear();
   bare.dots.clear();

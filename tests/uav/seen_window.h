@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "tests/uav/flown_scene.h"
-#include "uav/window_scans.h"
+#include "uav/window/window_scans.h"
 
 namespace alidade {
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The stamped batch against its bound and against the paper's proposed algorithm; the placement map's bound."""
+"""uav: the stamped batch against its bound; the placement map's bound; what both, and a window, cost."""
 
 from figure_topics.bench import summary
 from figure_topics.benchmark import least_times
@@ -9,7 +9,6 @@ RUNS = 5000
 PLACEMENT_RUNS = 500
 STRAIGHT = ("2 receivers", "3 receivers", "4 receivers", "6 receivers", "3 receivers, .3/.4")
 ACCELERATING = tuple(f"{count} receivers, accelerating" for count in (2, 3, 4, 6))
-DELAYS = {".1/.2": 0.33, ".3/.4": 0.17}
 
 
 def experiment(bench, part, runs):
@@ -41,16 +40,6 @@ BATCH = Section("batch", [figure for cell in (*STRAIGHT, *ACCELERATING) for figu
     Figure(f"batch/{word(cell)}/determined", "%", at_least=99.9))], measure_batch)
 
 
-def measure_to_paper(bench):
-    result = experiment(bench, "tables", 2000)
-    for delays in DELAYS:
-        yield f"batch/d-to-proposed/{word(delays)}", result[f"proposed m=1 {delays}"]["batch_to_paper"]
-
-
-TO_PAPER = Section("batch-to-paper", [Figure(f"batch/d-to-proposed/{word(delays)}", at_most=bound)
-                                      for delays, bound in DELAYS.items()], measure_to_paper)
-
-
 def measure_placement(bench):
     result = experiment(bench, "placement", PLACEMENT_RUNS)
     yield "placement/bound-off-monte-carlo", 100 * result["farthest_from_one"]
@@ -78,4 +67,4 @@ SPEED = Section("target-speed", [
     Figure("window/20-to-10", at_most=4.5),
 ], measure_speed)
 
-SECTIONS = [BATCH, TO_PAPER, PLACEMENT, SPEED]
+SECTIONS = [BATCH, PLACEMENT, SPEED]

@@ -8,7 +8,8 @@ from figure_topics.figure import Fact, Figure, Section
 
 RUNS = 200
 STANDARD = {"2-targets": "2 targets", "5-targets": "5 targets"}
-RECEIVERS = ("3", "4", "6")
+RECEIVERS = {f"{count}-receivers{suffix}": f"{count} receivers{words}"
+             for suffix, words in (("", ""), ("-gusts", ", gusts")) for count in (3, 4, 6)}
 SPACINGS = {"scatter-1": "scatter 1 m/s", "scatter-0.1": "scatter 0.1 m/s"}
 SWEEPS = ("0 false bearings", "1 false bearings", "3 false bearings", "detection 1", "detection 0.9", "detection 0.8",
           "rotating receivers", "cued receivers")
@@ -41,10 +42,10 @@ def measure_tracker(bench):
     for name, cell in SPACINGS.items():
         joint, nearest = (result["spacing"][f"{cell}, {method}"]["gospa_m"] for method in ("JPDA", "nearest neighbour"))
         yield f"tracker/1-m-apart/{name}/gospa-jpda-to-nearest", joint / nearest
-    for count in RECEIVERS:
-        score = result["receivers"][f"{count} receivers"]
-        yield f"tracker/{count}-receivers/rms-to-bound", score["to_bound"]
-        yield f"tracker/{count}-receivers/nees-per-degree", consistent(score)
+    for name, cell in RECEIVERS.items():
+        score = result["receivers"][cell]
+        yield f"tracker/{name}/rms-to-bound", score["to_bound"]
+        yield f"tracker/{name}/nees-per-degree", consistent(score)
     for condition in SWEEPS:
         score = result["sweeps"][condition]
         yield f"tracker/sweep/{word(condition)}/rms-to-true-association", score["to_true_association"]
@@ -66,9 +67,9 @@ def standard_figures(name):
 TRACKER = Section("tracker", [
     *(figure for name in STANDARD for figure in standard_figures(name)),
     *(Figure(f"tracker/1-m-apart/{name}/gospa-jpda-to-nearest", below=1) for name in SPACINGS),
-    *(figure for count in RECEIVERS for figure in (
-        Figure(f"tracker/{count}-receivers/rms-to-bound", at_most=1.1, goal=1.05),
-        Figure(f"tracker/{count}-receivers/nees-per-degree", expected="within its 95 % bounds"))),
+    *(figure for name in RECEIVERS for figure in (
+        Figure(f"tracker/{name}/rms-to-bound", at_most=1.1, goal=1.05),
+        Figure(f"tracker/{name}/nees-per-degree", expected="within its 95 % bounds"))),
     *(figure for condition in SWEEPS for figure in (
         Figure(f"tracker/sweep/{word(condition)}/rms-to-true-association"),
         Figure(f"tracker/sweep/{word(condition)}/switches", "per run"),

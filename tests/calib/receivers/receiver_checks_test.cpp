@@ -44,6 +44,15 @@ TEST(ReceiverChecks, NameSwappedPlaces) {
   EXPECT_EQ(describe(found[0]), "receivers 0 and 2: each stands where the other is said to stand");
 }
 
+TEST(ReceiverChecks, TellThreeExchangedPlacesFromTwoSwapped) {
+  auto flight = sound_flight();
+  swap_places(flight.receivers[0], flight.receivers[1]);
+  swap_places(flight.receivers[1], flight.receivers[2]);
+  const auto found = checked(flight);
+  ASSERT_EQ(found.size(), 3u);
+  for (const ReceiverFinding& f : found) EXPECT_EQ(f.fault, ReceiverFault::WrongPlace) << describe(f);
+}
+
 TEST(ReceiverChecks, NameAWrongPlace) {
   auto flight = sound_flight();
   flight.receivers[1].T_world_receiver.translation() += Eigen::Vector3d(3.0, 0.0, 4.0);
