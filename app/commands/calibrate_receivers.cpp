@@ -20,7 +20,7 @@ class CalibrateReceiversCommand : public Command {
                      "CSV of the pixels of one flying target, by each receiver's own clock; may be left out with a "
                      "folder");
     flags.add_option("--truth", sources_.truth,
-                     "where the target was: CSV of t_s, x_m, y_m, z_m, TUM, or a folder of a recorded flight; without "
+                     "where the target was: CSV of t_s, x_m, y_m, z_m, TUM, or a folder that holds it; without "
                      "it, path and cameras are found together");
     flags.add_option("--start-s", sources_.start_s, "s, by the common clock: pass over what is before");
     flags.add_option("--end-s", sources_.end_s, "s, by the common clock: pass over what is from there on");

@@ -56,7 +56,10 @@ TEST(ReceiverCalibration, ResectsADisturbedCameraOnAKnownPath) {
 
 TEST(ReceiverCalibration, FindsNoReceiverThatIsImpossible) {
   const auto run = calibrate_receivers(test::disturbed_flight(), {}, {});
-  for (const CalibratedReceiver& one : run.receivers) EXPECT_FALSE(find_fault(one.found)) << *find_fault(one.found);
+  for (const CalibratedReceiver& one : run.receivers) {
+    EXPECT_TRUE(one.is_calibrated());
+    EXPECT_FALSE(find_fault(one.found)) << *find_fault(one.found);
+  }
 }
 
 TEST(ReceiverCalibration, FindsThePathWhereItIsNotKnown) {
