@@ -32,7 +32,7 @@ class CalibrateReceiversCommand : public Command {
     ResultDirectory directory(context.output, "calibrate receivers");
     ReceiverCalibrationRun run = calibrate_receivers(input, choice_, {context.progress, context.stop});
     if (!run.has_answer()) {
-      if (run.is_interrupted) return ExitCode::Interrupted;
+      if (context.stop.stop_requested()) return ExitCode::Interrupted;
       context.warn(explain_no_answer(run));
       return ExitCode::NoAnswer;
     }
@@ -44,7 +44,7 @@ class CalibrateReceiversCommand : public Command {
     context.publish(summary);
     for (const std::string& line : table_lines(run)) context.tell(line);
     context.tell(fmt::format("written to {}", context.output.string()));
-    return run.is_interrupted ? ExitCode::Interrupted : ExitCode::Success;
+    return context.stop.stop_requested() ? ExitCode::Interrupted : ExitCode::Success;
   }
 
  private:

@@ -62,6 +62,19 @@ TEST(ReceiverCalibration, FindsNoReceiverThatIsImpossible) {
   }
 }
 
+TEST(ReceiverCalibration, StaysNearTheGivenReceiversWhereAShortFlightTellsLittle) {
+  ReceiverCalibrationInput input = test::disturbed_flight();
+  std::erase_if(input.readings, [&](const ReceiverReading& reading) {
+    const auto& clock = input.receivers[static_cast<std::size_t>(reading.receiver)].clock;
+    return common_time(clock, reading.time) > Timestamp(from_seconds(7.0));
+  });
+  const auto run = calibrate_receivers(input, {}, {});
+  for (const CalibratedReceiver& one : run.receivers) {
+    ASSERT_TRUE(one.after.median_px);
+    EXPECT_LT(*one.after.median_px, 1.5 * *one.before.median_px);
+  }
+}
+
 TEST(ReceiverCalibration, FindsThePathWhereItIsNotKnown) {
   const auto run = calibrate_receivers(without_truth(), {}, {});
   ASSERT_TRUE(run.has_answer());
