@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <stdexcept>
@@ -83,9 +84,13 @@ class EvaluateCommand : public Command {
 
  private:
   ExitCode evaluate_targets(const RunContext& context) const {
-    const std::vector<TargetRow> truth = read_target_rows(target_file_of(truth_));
-    const TargetScores scores =
-        score_targets(moments_of(read_target_rows(target_file_of(estimate_)), truth), cutoff_m_);
+    const std::vector<TargetMoment> moments = moments_of(read_estimates(), read_target_rows(target_file_of(truth_)));
+    if (std::ranges::all_of(moments, [](const TargetMoment& moment) { return moment.estimates.empty(); })) {
+      throw InputError(target_file_of(estimate_).string(), 0,
+                       fmt::format("no estimate lies within the time of {}", target_file_of(truth_).string()),
+                       "set --time-offset-s");
+    }
+    const TargetScores scores = score_targets(moments, cutoff_m_);
     for (const std::string& line : table_lines(scores)) context.tell(line);
     context.publish(summary_of(scores));
     if (context.output.empty()) return ExitCode::Success;
@@ -97,6 +102,12 @@ class EvaluateCommand : public Command {
     directory.commit(summary_of(scores));
     context.tell(fmt::format("written to {}", context.output.string()));
     return ExitCode::Success;
+  }
+
+  std::vector<TargetRow> read_estimates() const {
+    std::vector<TargetRow> rows = read_target_rows(target_file_of(estimate_));
+    for (TargetRow& row : rows) row.time += from_seconds(association_.time_offset_s);
+    return rows;
   }
 
   ExitCode evaluate_poses(const RunContext& context) const {

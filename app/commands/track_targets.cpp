@@ -12,6 +12,7 @@
 #include "app/reading_source.h"
 #include "app/targets/placement_plan.h"
 #include "app/targets/sky_source.h"
+#include "app/targets/target_evaluation.h"
 #include "app/targets/target_pipeline.h"
 #include "app/targets/target_report.h"
 #include "app/targets/video_sky.h"
@@ -26,7 +27,7 @@ class TrackTargetsCommand : public Command {
   explicit TrackTargetsCommand(CLI::App& flags) {
     flags
         .add_option("RECEIVERS", receivers_,
-                    "receivers: our YAML, a rig of cameras, or a folder that holds observations too")
+                    "receivers: our YAML, a rig of cameras, or a folder that holds observations or videos too")
         ->required();
     flags.add_option(
         "OBSERVATIONS", observations_,
@@ -45,9 +46,9 @@ class TrackTargetsCommand : public Command {
     const std::vector<Receiver> receivers = read_receivers_of(receivers_);
     check(receivers);
     if (is_plan_) return plan(context, receivers);
-    const std::vector<TargetRow> truth = truth_.empty() ? std::vector<TargetRow>() : read_target_rows(truth_);
-    const std::vector<std::string> sources =
-        observations_.empty() ? std::vector<std::string>{receivers_} : observations_;
+    const std::vector<TargetRow> truth =
+        truth_.empty() ? std::vector<TargetRow>() : read_target_rows(target_file_of(truth_));
+    const std::vector<std::string> sources = sources_of(receivers);
     const std::string source = fmt::format("{}", fmt::join(sources, ", "));
     std::optional<LiveOutput> live;  // before standard input has said anything
     if (!stream_.empty()) live.emplace(context, stream_, hello_message(hello(source)));
@@ -76,6 +77,7 @@ class TrackTargetsCommand : public Command {
     run.without_direction = sky->without_direction();
     run.interrupted = context.stop.stop_requested();
     if (fault) run.fault = fault->what();
+    run.warnings = sky->losses();
     add_warnings(pipeline, run);
     if (live) live->end(end_message({run.bearings, static_cast<std::int64_t>(run.targets.size()), run.interrupted}));
     const std::vector<Receiver>& operated = pipeline.receivers_in_operation();
@@ -91,6 +93,12 @@ class TrackTargetsCommand : public Command {
   }
 
  private:
+  std::vector<std::string> sources_of(const std::vector<Receiver>& receivers) const {
+    if (!observations_.empty()) return observations_;
+    const std::vector<std::string> videos = videos_in(receivers_, receivers);
+    return videos.empty() ? std::vector<std::string>{receivers_} : videos;
+  }
+
   void check(const std::vector<Receiver>& receivers) const {
     const std::size_t least = track_.method == TargetMethod::PaperProposed ? 3 : 2;
     if (receivers.size() >= least) return;
@@ -180,9 +188,9 @@ class TrackTargetsCommand : public Command {
   static ExitCode answer(const RunContext& context, const TargetRun& run) {
     if (!run.targets.empty()) return ExitCode::Success;
     context.warn(run.bearings == 0
-                     ? fmt::format("{}: holds no bearing", run.source)
-                     : fmt::format("{}: no target was found: do the lines of sight of two receivers cross, are poses, "
-                                   "clocks and the period those of this recording?",
+                     ? fmt::format("{}: holds no bearing: nothing was seen, or it is another file", run.source)
+                     : fmt::format("{}: no target was found: do lines of sight of two receivers cross at an angle, are "
+                                   "poses, clocks and the period those of this recording?",
                                    run.source));
     return ExitCode::NoAnswer;
   }

@@ -96,6 +96,10 @@ PlacementOptions placement_of(const PlanOptions& options) {
   PlacementOptions placement = options.placement;
   placement.least_world = vector_of("plan.least_m", options.least_m);
   placement.greatest_world = vector_of("plan.greatest_m", options.greatest_m);
+  if (!(placement.greatest_world.array() >= placement.least_world.array()).all()) {
+    throw std::invalid_argument(fmt::format("plan.greatest_m must be >= plan.least_m in each coordinate, got {} and {}",
+                                            options.greatest_m, options.least_m));
+  }
   placement.v_world = vector_of("plan.v_m_s", options.v_m_s);
   placement.delays_s = parse_numbers("plan.delays_s", options.delays_s);
   return placement;

@@ -2,10 +2,12 @@
 #include "app/targets/sky_source.h"
 
 #include <algorithm>
+#include <deque>
 #include <filesystem>
 #include <map>
 #include <utility>
 
+#include "core/errors.h"
 #include "core/find_by_id.h"
 #include "datasets/flight_recording.h"
 #include "io/receiver_file.h"
@@ -16,9 +18,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double kMostDisorder_s = 1.0;  // of one receiver; the tracker's lag decides what is of use
+
 // The median time between successive frames of each camera, and of these the longest; empty unless all are cameras.
 std::optional<double> longest_interval_s(std::span<const Receiver> receivers,
-                                         std::span<const ReceiverReading> readings) {
+                                         const std::vector<ReceiverReading>& readings) {
   std::map<int, std::vector<Timestamp>> times;
   for (const ReceiverReading& reading : readings) times[reading.receiver].push_back(reading.time);
   double longest = 0.0;
@@ -38,18 +42,22 @@ std::optional<double> longest_interval_s(std::span<const Receiver> receivers,
   return longest;
 }
 
-// All at once, in order.
+// All at once, in order; what ended the file too early comes after them.
 class RecordedSky : public SkySource {
  public:
-  RecordedSky(std::span<const Receiver> receivers, std::span<const ReceiverReading> readings, std::stop_token stop)
-      : bearings_(bearings_of(receivers, readings)),
+  RecordedSky(std::span<const Receiver> receivers, const std::vector<ReceiverReading>& readings, std::stop_token stop,
+              std::optional<InputError> fault = std::nullopt)
+      : fault_(std::move(fault)),
+        bearings_(bearings_of(receivers, readings)),
         without_direction_(static_cast<std::int64_t>(readings.size() - bearings_.size())),
         frame_interval_s_(longest_interval_s(receivers, readings)),
         stop_(std::move(stop)) {}
 
   std::optional<Bearing> next() override {
-    if (next_ == bearings_.size() || stop_.stop_requested()) return std::nullopt;
-    return bearings_[next_++];
+    if (stop_.stop_requested()) return std::nullopt;
+    if (next_ < bearings_.size()) return bearings_[next_++];
+    if (fault_) throw *fault_;
+    return std::nullopt;
   }
 
   Progress progress() const override {
@@ -60,12 +68,25 @@ class RecordedSky : public SkySource {
   std::optional<double> frame_interval_s() const override { return frame_interval_s_; }
 
  private:
+  std::optional<InputError> fault_;
   std::vector<Bearing> bearings_;
   std::int64_t without_direction_;
   std::optional<double> frame_interval_s_;
   std::stop_token stop_;
   std::size_t next_ = 0;
 };
+
+std::unique_ptr<SkySource> open_file(const fs::path& path, std::span<const Receiver> receivers, std::stop_token stop) {
+  ReceiverReadingReader reader(path, receivers, kMostDisorder_s, stop);
+  std::vector<ReceiverReading> readings;
+  std::optional<InputError> fault;
+  try {
+    while (const auto reading = reader.next()) readings.push_back(*reading);
+  } catch (const InputError& error) {
+    fault = error;
+  }
+  return std::make_unique<RecordedSky>(receivers, readings, std::move(stop), fault);
+}
 
 // Of the form that datasets/flight_recording.h reads.
 bool is_flight(const std::string& source) {
@@ -75,10 +96,12 @@ bool is_flight(const std::string& source) {
 class LiveSky : public SkySource {
  public:
   LiveSky(const std::string& source, std::span<const Receiver> receivers, std::stop_token stop)
-      : receivers_(receivers.begin(), receivers.end()), reader_(source, receivers, kMostDisorder_s, std::move(stop)) {}
+      : receivers_(receivers.begin(), receivers.end()), reader_(source, receivers, kMostDisorder_s, std::move(stop)) {
+    if (std::ranges::all_of(receivers, [](const Receiver& r) { return r.camera.has_value(); })) listen();
+  }
 
   std::optional<Bearing> next() override {
-    while (const auto reading = reader_.next()) {
+    while (const auto reading = next_reading()) {
       const Receiver* receiver = find_by_id(std::span<const Receiver>(receivers_), reading->receiver);
       if (const auto bearing = bearing_of(*receiver, *reading)) return bearing;
       ++without_direction_;
@@ -89,12 +112,39 @@ class LiveSky : public SkySource {
   Progress progress() const override { return {"tracking (bearings)", reader_.count(), 0, ""}; }
 
   std::int64_t without_direction() const override { return without_direction_; }
+  std::optional<double> frame_interval_s() const override { return frame_interval_s_; }
 
  private:
-  static constexpr double kMostDisorder_s = 1.0;  // of one receiver; the tracker's lag decides what is of use
+  // Waits for the readings that tell how fast frames come, and keeps them.
+  void listen() {
+    constexpr double kEnough_s = 1.0;
+    constexpr std::size_t kMost = 10'000;
+    try {
+      while (first_.size() < kMost) {
+        const auto reading = reader_.next();
+        if (!reading) break;
+        first_.push_back(*reading);
+        if (to_seconds(reading->time - first_.front().time) > kEnough_s) break;
+      }
+    } catch (const InputError& error) {
+      fault_ = error;
+    }
+    frame_interval_s_ = longest_interval_s(receivers_, {first_.begin(), first_.end()});
+  }
+
+  std::optional<ReceiverReading> next_reading() {
+    if (first_.empty() && fault_) throw *fault_;
+    if (first_.empty()) return reader_.next();
+    const ReceiverReading reading = first_.front();
+    first_.pop_front();
+    return reading;
+  }
 
   std::vector<Receiver> receivers_;
   ReceiverReadingReader reader_;
+  std::deque<ReceiverReading> first_;
+  std::optional<InputError> fault_;
+  std::optional<double> frame_interval_s_;
   std::int64_t without_direction_ = 0;
 };
 
@@ -114,7 +164,7 @@ std::unique_ptr<SkySource> open_sky(const std::string& source, std::span<const R
     return std::make_unique<RecordedSky>(receivers, flight.readings, std::move(stop));
   }
   const fs::path path = fs::is_directory(source) ? fs::path(source) / "observations.csv" : fs::path(source);
-  return std::make_unique<RecordedSky>(receivers, read_receiver_readings(path, receivers), std::move(stop));
+  return open_file(path, receivers, std::move(stop));
 }
 
 }  // namespace alidade

@@ -30,6 +30,9 @@ class SkySource {
 
   /// Readings so far that have no direction: their pixels lie where the lens's model does not reach.
   virtual std::int64_t without_direction() const { return 0; }
+
+  /// At the end: what was cut short or lost on the way, "cam0.mp4: is cut off after 37 frames".
+  virtual std::vector<std::string> losses() const { return {}; }
 };
 
 /// The receivers of a file, or of a folder: a recorded flight (datasets/flight_recording.h) or a result of
@@ -37,9 +40,9 @@ class SkySource {
 std::vector<Receiver> read_receivers_of(const std::string& source);
 
 /// A CSV file of observations, which is read whole and put in order of the common clock (100 bytes each); standard
-/// input
-/// ("-"), which is taken as it comes; or a folder with both receivers and observations. Throws InputError for what
-/// cannot be read.
+/// input ("-"), which is taken as it comes, of cameras once the first second has told how fast their frames come; or a
+/// folder with both receivers and observations. Throws InputError for what cannot be opened; of a file that is damaged
+/// somewhere next() gives what lies before first.
 std::unique_ptr<SkySource> open_sky(const std::string& source, std::span<const Receiver> receivers,
                                     std::stop_token stop);
 

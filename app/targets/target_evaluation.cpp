@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <fstream>
 #include <map>
-#include <set>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -28,27 +28,65 @@ std::map<int, std::vector<TimedPosition>> paths_of(std::span<const TargetRow> ro
   return paths;
 }
 
-Duration usual_step(const std::set<Timestamp>& times) {
+// The median time between successive rows of a target.
+Duration usual_step(std::span<const TargetRow> rows) {
   std::vector<Duration> steps;
-  for (auto t = times.begin(); t != times.end() && std::next(t) != times.end(); ++t)
-    steps.push_back(*std::next(t) - *t);
+  for (const auto& [target, path] : paths_of(rows)) {
+    for (std::size_t i = 1; i < path.size(); ++i) {
+      if (path[i].time > path[i - 1].time) steps.push_back(path[i].time - path[i - 1].time);
+    }
+  }
   if (steps.empty()) return from_seconds(kLongestGap_s);
   const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
   std::nth_element(steps.begin(), middle, steps.end());
   return *middle;
 }
 
-// The estimates' times, and more at their usual distance from `first` to `last` where these leave a gap.
-std::set<Timestamp> all_times(const std::set<Timestamp>& times, Timestamp first, Timestamp last) {
-  const Duration step = usual_step(times);
-  std::set<Timestamp> all = times;
-  Timestamp before = times.empty() ? last + step : *times.begin();
-  for (Timestamp t = before - step; t >= first; t -= step) all.insert(t);
-  for (const Timestamp next : times) {
-    for (Timestamp t = before + step; t + step / 2 < next; t += step) all.insert(t);
-    before = next;
+IdentifiedPosition moved_to(const TargetRow& row, Timestamp time) {
+  const double dt = to_seconds(time - row.time);
+  IdentifiedPosition position{row.target, row.p_world + dt * row.v_world, {}};
+  if (!row.covariance) return position;
+  const Matrix6d& P = *row.covariance;
+  const Eigen::Matrix3d P_pv = P.topRightCorner<3, 3>();
+  position.covariance =
+      P.topLeftCorner<3, 3>() + dt * (P_pv + P_pv.transpose()) + dt * dt * P.bottomRightCorner<3, 3>();
+  return position;
+}
+
+// Estimates in order of time; those of different targets that are nearer than half a step are of one moment, the first
+// one's.
+std::vector<TargetMoment> told_moments(std::span<const TargetRow> estimates, Duration step) {
+  std::vector<TargetRow> rows(estimates.begin(), estimates.end());
+  std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
+  std::vector<TargetMoment> moments;
+  for (const TargetRow& row : rows) {
+    const auto is_same = [&](const IdentifiedPosition& other) { return other.id == row.target; };
+    const bool is_new = moments.empty() || row.time - moments.back().time >= step / 2 ||
+                        std::ranges::any_of(moments.back().estimates, is_same);
+    if (is_new) moments.push_back({row.time, {}, {}});
+    moments.back().estimates.push_back(moved_to(row, moments.back().time));
   }
-  for (Timestamp t = before + step; t <= last; t += step) all.insert(t);
+  return moments;
+}
+
+// Those from `first` to `last`, and empty ones a step apart where these leave a gap.
+std::vector<TargetMoment> with_gaps_filled(std::vector<TargetMoment> told, Duration step, Timestamp first,
+                                           Timestamp last) {
+  constexpr int kMostFilled = 100'000;
+  std::erase_if(told, [&](const TargetMoment& moment) { return moment.time < first || moment.time > last; });
+  step = std::max({step, (last - first) / kMostFilled, Duration(1)});
+  std::vector<TargetMoment> all;
+  const Timestamp begin = told.empty() ? first : first + (told.front().time - first) % step;
+  const auto fill = [&](Timestamp from, Timestamp until) {
+    for (Timestamp t = from; t <= until; t += step) all.push_back({t, {}, {}});
+  };
+  Timestamp next = begin;
+  for (TargetMoment& moment : told) {
+    fill(next, moment.time - step / 2 - Duration(1));
+    next = moment.time + step;
+    all.push_back(std::move(moment));
+  }
+  fill(next, last);
   return all;
 }
 
@@ -62,30 +100,21 @@ bool is_target_file(const fs::path& path) {
 }
 
 fs::path target_file_of(const fs::path& path) {
-  return fs::is_directory(path) ? path / "tracks.csv" : path;
+  if (!fs::is_directory(path)) return path;
+  return path / (fs::exists(path / "tracks.csv") ? "tracks.csv" : "truth.csv");
 }
 
 std::vector<TargetMoment> moments_of(std::span<const TargetRow> estimates, std::span<const TargetRow> truth) {
-  std::map<Timestamp, std::vector<IdentifiedPosition>> told;
-  std::set<Timestamp> times;
-  for (const TargetRow& row : estimates) {
-    IdentifiedPosition position{row.target, row.p_world, {}};
-    if (row.covariance) position.covariance = row.covariance->topLeftCorner<3, 3>();
-    told[row.time].push_back(position);
-    times.insert(row.time);
-  }
   Timestamp first = Timestamp::max(), last = Timestamp::min();
   for (const TargetRow& row : truth) first = std::min(first, row.time), last = std::max(last, row.time);
+  const Duration step = usual_step(estimates);
   const auto paths = paths_of(truth);
-  std::vector<TargetMoment> moments;
-  for (const Timestamp time : all_times(times, first, last)) {
-    if (time < first || time > last) continue;
-    TargetMoment moment{time, {}, {}};
+  std::vector<TargetMoment> moments = with_gaps_filled(told_moments(estimates, step), step, first, last);
+  for (TargetMoment& moment : moments) {
     for (const auto& [target, path] : paths) {
-      if (const auto p = position_at(path, time, from_seconds(kLongestGap_s))) moment.truth.push_back({target, *p, {}});
+      const auto p = position_at(path, moment.time, from_seconds(kLongestGap_s));
+      if (p) moment.truth.push_back({target, *p, {}});
     }
-    if (const auto found = told.find(time); found != told.end()) moment.estimates = found->second;
-    moments.push_back(std::move(moment));
   }
   return moments;
 }

@@ -171,7 +171,7 @@ void TargetPipeline::finish() {
     return;
   }
   if (!next_output_) return;
-  if (live_ || cue_) tell_newest();
+  if ((live_ || cue_) && *next_live_ <= tracker_.now()) tell_newest();
   write_until(tracker_.now());
 }
 

@@ -16,6 +16,11 @@ namespace {
 
 constexpr ViewAngles kAngles{0.9, 0.5, 1.0};
 
+template <class Count>
+std::string counted(Count count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
 double mean(double sum, std::int64_t count) {
   return count == 0 ? 0.0 : sum / static_cast<double>(count);
 }
@@ -108,13 +113,13 @@ nlohmann::json summary_of(const TargetRun& run) {
 }
 
 std::vector<std::string> table_lines(const TargetRun& run) {
-  std::vector<std::string> lines{fmt::format("{} bearings of {} receivers in {:.1f} s: {} targets", run.bearings,
-                                             run.bearings_of_receiver.size(), to_seconds(run.last - run.first),
-                                             run.targets.size())};
+  std::vector<std::string> lines{fmt::format("{} of {} in {:.1f} s: {}", counted(run.bearings, "bearing"),
+                                             counted(run.bearings_of_receiver.size(), "receiver"),
+                                             to_seconds(run.last - run.first), counted(run.targets.size(), "target"))};
   constexpr std::size_t kMost = 20;
   for (const auto& [id, tally] : run.targets) {
     if (lines.size() > kMost) {
-      lines.push_back("...");
+      lines.push_back(fmt::format("... and {} more", run.targets.size() - kMost));
       break;
     }
     lines.push_back(fmt::format("target {}: {:.2f} to {:.2f} s, {} sightings, sigma {:.3g} m", id,

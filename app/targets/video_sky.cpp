@@ -47,6 +47,12 @@ class Watcher {
 
   double interval_s() const { return interval_s_; }
 
+  std::optional<std::string> loss() const {
+    const auto fault = frames_->fault();
+    if (!fault) return std::nullopt;
+    return fault->find(source_) == std::string::npos ? source_ + ": " + *fault : *fault;
+  }
+
  private:
   void check_size() const {
     if (!frame_) return;
@@ -95,6 +101,14 @@ class VideoSky : public SkySource {
   Progress progress() const override { return {"watching (frames)", done_, total_, ""}; }
   std::int64_t without_direction() const override { return without_direction_; }
 
+  std::vector<std::string> losses() const override {
+    std::vector<std::string> losses;
+    for (const Watcher& watcher : watchers_) {
+      if (const auto loss = watcher.loss()) losses.push_back(*loss);
+    }
+    return losses;
+  }
+
   std::optional<double> frame_interval_s() const override {
     double longest = 0.0;
     for (const Watcher& watcher : watchers_) longest = std::max(longest, watcher.interval_s());
@@ -132,11 +146,29 @@ bool shows_images(const std::string& source) {
   return extension != ".csv" && extension != ".txt";
 }
 
+std::vector<std::string> videos_in(const std::string& folder, std::span<const Receiver> receivers) {
+  const std::filesystem::path path(folder);
+  if (!std::filesystem::is_directory(path) || std::filesystem::exists(path / "observations.csv")) return {};
+  std::vector<std::string> videos;
+  for (const Receiver& receiver : receivers) {
+    for (const char* extension : {".mkv", ".mp4"}) {
+      const std::filesystem::path video = path / (receiver.name + extension);
+      if (!std::filesystem::exists(video)) continue;
+      videos.push_back(video.string());
+      break;
+    }
+  }
+  if (videos.size() != receivers.size()) return {};
+  return videos;
+}
+
 std::unique_ptr<SkySource> open_videos(const std::vector<std::string>& sources, std::span<const Receiver> receivers,
                                        ReadingSink found, std::stop_token stop) {
   if (sources.size() != receivers.size()) {
-    throw InputError(sources.front(), 0, fmt::format("{} videos for {} receivers", sources.size(), receivers.size()),
-                     "give one for each receiver, in the order of their file");
+    throw InputError(
+        sources.front(), 0,
+        fmt::format("{} video{} for {} receivers", sources.size(), sources.size() == 1 ? "" : "s", receivers.size()),
+        "give one for each receiver, in the order of their file");
   }
   return std::make_unique<VideoSky>(sources, receivers, std::move(found), std::move(stop));
 }

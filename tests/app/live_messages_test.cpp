@@ -86,6 +86,43 @@ TEST(BodyMessage, LeavesOutWhatIsNotKnown) {
             R"({"type":"pose","source":"-","body":"probe","t_ns":4000000,"state":"lost"})");
 }
 
+TEST(TargetMessage, TellsPlaceMotionAndCovarianceInTheWorld) {
+  TargetRow row;
+  row.time = Timestamp(std::chrono::milliseconds(250));
+  row.target = 3;
+  row.state = "coasting";
+  row.p_world = Eigen::Vector3d(1, 2, 3);
+  row.v_world = Eigen::Vector3d(0, -4, 0);
+  row.sightings = 11;
+  EXPECT_EQ(target_message("sim", row).dump(),
+            R"({"type":"target","source":"sim","target":3,"t_ns":250000000,"state":"coasting",)"
+            R"("p_world_m":[1.0,2.0,3.0],"v_world_m_s":[0.0,-4.0,0.0],"sightings":11})");
+  row.covariance = Matrix6d::Identity();
+  (*row.covariance)(0, 5) = 0.5;
+  row.temperature_k = 300.0;
+  row.temperature_sigma_k = 2.5;
+  const Json message = target_message("sim", row);
+  EXPECT_EQ(message["covariance"].size(), 6u);
+  EXPECT_EQ(message["covariance"][0], (Json{1.0, 0.0, 0.0, 0.0, 0.0, 0.5}));
+  EXPECT_EQ(message["temperature_k"], 300.0);
+  EXPECT_EQ(message["temperature_sigma_k"], 2.5);
+}
+
+TEST(CueMessage, TellsWhomToLookWhereAndWhen) {
+  AddressedCue cue;
+  cue.told = Timestamp(std::chrono::seconds(1));
+  cue.target = 3;
+  cue.receiver = 2;
+  cue.cue.time = Timestamp(std::chrono::milliseconds(1500));
+  cue.cue.own_time = Timestamp(std::chrono::milliseconds(1250));
+  cue.cue.azimuth_elevation = Eigen::Vector2d(0.25, -0.5);
+  cue.cue.covariance << 1.0, 0.5, 0.5, 2.0;
+  cue.cue.range_m = 150.0;
+  EXPECT_EQ(cue_message(cue).dump(),
+            R"({"type":"cue","target":3,"receiver":2,"told_ns":1000000000,"t_ns":1500000000,"own_t_ns":1250000000,)"
+            R"("azimuth_rad":0.25,"elevation_rad":-0.5,"covariance":[[1.0,0.5],[0.5,2.0]],"range_m":150.0})");
+}
+
 TEST(EndMessage, SaysHowItEnded) {
   EXPECT_EQ(end_message({10, 8, true}).dump(), R"({"type":"end","frames":10,"tracked":8,"interrupted":true})");
 }

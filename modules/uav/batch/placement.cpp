@@ -56,7 +56,7 @@ void validate(const PlacementOptions& o) {
             ">= least_world in each coordinate", o.greatest_world[i]);
   }
   require(o.step_m > 0.0, "step_m", "> 0 m", o.step_m);
-  const double points = ((o.greatest_world - o.least_world) / o.step_m).array().floor().prod();
+  const double points = (((o.greatest_world - o.least_world) / o.step_m).array().floor() + 1.0).prod();
   require(points <= kMostPoints, "step_m", "so large that the grid has at most 1e7 points", o.step_m);
   require(o.periods >= 1, "periods", ">= 1", o.periods);
   require(o.period_s > 0.0, "period_s", "> 0 s", o.period_s);

@@ -14,13 +14,18 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// ∂(azimuth, elevation)/∂p of a point in the receiver's axes (m): azimuth = atan2(x, z), elevation = asin(-y / r).
-Eigen::Matrix<double, 2, 3> angles_jacobian(const Vector3d& p) {
+FinderAxes axes_of(const Receiver& receiver) {
+  return receiver.camera ? FinderAxes::YDown : receiver.axes;
+}
+
+// ∂(azimuth, elevation)/∂p of a point in the receiver's axes (m): azimuth = atan2(x, z), elevation = asin(∓y / r).
+Eigen::Matrix<double, 2, 3> angles_jacobian(const Vector3d& p, FinderAxes axes) {
   const double across2 = p.x() * p.x() + p.z() * p.z();
   const double across = std::sqrt(across2), range2 = p.squaredNorm();
   Eigen::Matrix<double, 2, 3> J;
   J << p.z() / across2, 0.0, -p.x() / across2,  //
       p.x() * p.y() / (range2 * across), -across / range2, p.z() * p.y() / (range2 * across);
+  if (axes == FinderAxes::YUp) J.row(1) *= -1.0;
   return J;
 }
 
@@ -62,11 +67,11 @@ std::optional<Cue> cue_at(const Receiver& receiver, const TargetState& state, Ti
     J_p_pose << -Matrix3d::Identity(), cross_matrix(p);
     P += J_p_pose * *receiver.pose_covariance * J_p_pose.transpose();
   }
-  const Eigen::Matrix<double, 2, 3> J = angles_jacobian(p);
+  const Eigen::Matrix<double, 2, 3> J = angles_jacobian(p, axes_of(receiver));
   Cue cue;
   cue.time = time;
   cue.own_time = own_time(receiver.clock, time);
-  cue.azimuth_elevation = angles_of_direction(p.normalized());
+  cue.azimuth_elevation = angles_of_direction(p.normalized(), axes_of(receiver));
   cue.covariance = J * P * J.transpose();
   cue.range_m = p.norm();
   return cue;
@@ -76,7 +81,8 @@ std::optional<Cue> cue_for(const SteeredReceiver& steered, const TargetState& st
                            const TargetMotion& motion, double most_s) {
   validate(steered);
   constexpr int kSteps = 200;
-  const Vector3d looks_at = direction_of_angles(steered.azimuth_elevation.value_or(Vector2d::Zero()));
+  const Vector3d looks_at =
+      direction_of_angles(steered.azimuth_elevation.value_or(Vector2d::Zero()), axes_of(steered.receiver));
   const auto is_ready = [&](double after_s) { return ready_after(steered, looks_at, state, told, after_s) <= after_s; };
   int step = 0;
   while (step <= kSteps && !is_ready(most_s * step / kSteps)) ++step;

@@ -47,6 +47,21 @@ TEST(Cue, IsWhatTheReceiverWouldRead) {
   EXPECT_NEAR(cue->range_m, (moved_to(flying(), at(0.4)).p_world - Vector3d(5, 10, -15)).norm(), 1e-9);
 }
 
+// The paper's axes point the other way up: the same place, its elevation with the other sign.
+TEST(Cue, IsInTheAxesOfTheReceiver) {
+  Receiver down = receiver_of({5, 10, -15}), up = down;
+  up.axes = FinderAxes::YUp;
+  const auto cue = cue_at(up, flying(), at(0.4)), other = cue_at(down, flying(), at(0.4));
+  const auto reading = reading_of(up, moved_to(flying(), at(0.4)).p_world, at(0.4));
+  EXPECT_LT((cue->azimuth_elevation - reading->value).norm(), 1e-12);
+  EXPECT_NEAR(cue->azimuth_elevation[1], -other->azimuth_elevation[1], 1e-12);
+  EXPECT_NEAR(cue->covariance(0, 1), -other->covariance(0, 1), 1e-15);
+  EXPECT_NEAR(cue->covariance(1, 1), other->covariance(1, 1), 1e-15);
+  const Vector2d looks_at = other->azimuth_elevation.cwiseProduct(Vector2d(1.0, -1.0));
+  const auto steered = cue_for({up, 1.0, 0.0, looks_at}, flying(), at(0.4));  // it looks there already
+  EXPECT_LT(to_seconds(steered->time - at(0.4)), 1e-6);
+}
+
 TEST(Cue, IsTimedByTheReceiversOwnClockToo) {
   Receiver receiver = receiver_of({0, 0, 0});
   receiver.clock.offset_s = 0.25;
