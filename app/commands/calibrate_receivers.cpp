@@ -20,7 +20,7 @@ class CalibrateReceiversCommand : public Command {
                      "CSV of the pixels of one flying target, by each receiver's own clock; may be left out with a "
                      "folder");
     flags.add_option("--truth", sources_.truth,
-                     "where the target was: CSV of t_s, x_m, y_m, z_m, TUM, or a folder of a recorded flight; without "
+                     "where the target was: CSV of t_s, x_m, y_m, z_m, TUM, or a folder that holds it; without "
                      "it, path and cameras are found together");
     flags.add_option("--start-s", sources_.start_s, "s, by the common clock: pass over what is before");
     flags.add_option("--end-s", sources_.end_s, "s, by the common clock: pass over what is from there on");
@@ -32,7 +32,7 @@ class CalibrateReceiversCommand : public Command {
     ResultDirectory directory(context.output, "calibrate receivers");
     ReceiverCalibrationRun run = calibrate_receivers(input, choice_, {context.progress, context.stop});
     if (!run.has_answer()) {
-      if (run.is_interrupted) return ExitCode::Interrupted;
+      if (context.stop.stop_requested()) return ExitCode::Interrupted;
       context.warn(explain_no_answer(run));
       return ExitCode::NoAnswer;
     }
@@ -44,7 +44,7 @@ class CalibrateReceiversCommand : public Command {
     context.publish(summary);
     for (const std::string& line : table_lines(run)) context.tell(line);
     context.tell(fmt::format("written to {}", context.output.string()));
-    return run.is_interrupted ? ExitCode::Interrupted : ExitCode::Success;
+    return context.stop.stop_requested() ? ExitCode::Interrupted : ExitCode::Success;
   }
 
  private:

@@ -52,7 +52,10 @@ std::vector<ReceiverReading> read_observations(const ReceiverCalibrationSources&
 }
 
 std::vector<TimedPosition> read_truth(const std::string& source) {
-  std::vector<TimedPosition> truth = is_flight(source) ? read_flight(source).truth : read_positions(source);
+  const fs::path simulated = fs::path(source) / "truth.csv";
+  std::vector<TimedPosition> truth = is_flight(source)
+                                         ? read_flight(source).truth
+                                         : read_positions(fs::exists(simulated) ? simulated : fs::path(source));
   constexpr std::size_t kLeast = 4;  // a curve through the positions takes them
   if (truth.size() < kLeast) {
     throw InputError(source, 0, fmt::format("holds {} positions, wanted are {} or more", truth.size(), kLeast),

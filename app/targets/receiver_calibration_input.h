@@ -13,9 +13,10 @@ namespace alidade {
 
 /// What the user named for `calibrate receivers`.
 struct ReceiverCalibrationSources {
-  std::string receivers;          ///< a file, or a folder that holds observations, too
-  std::string observations;       ///< CSV, or a folder; empty: in the folder of the receivers
-  std::string truth;              ///< where the target was: CSV, TUM or a recorded flight; empty: not known
+  std::string receivers;     ///< a file, or a folder that holds observations, too
+  std::string observations;  ///< CSV, or a folder; empty: in the folder of the receivers
+  std::string
+      truth;  ///< where the target was: CSV, TUM, a recorded flight or a result of `simulate targets`; empty: not known
   std::optional<double> start_s;  ///< by the common clock; empty: from the beginning
   std::optional<double> end_s;    ///< not itself; empty: to the end
 };

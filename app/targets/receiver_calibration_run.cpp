@@ -39,26 +39,37 @@ ResectionOptions fitted_to(const Readings& readings, ResectionOptions options) {
   return options;
 }
 
-// A rolling shutter that the readings hardly tell may come out below nothing; it stands, then.
-std::optional<ResectedReceiver> possible_resection(const Receiver& given, const Readings& readings,
-                                                   const KnownTrack& track, ResectionOptions options) {
-  auto resected = resect_receiver(given, readings, track, options);
-  if (!resected || !find_fault(resected->receiver)) return resected;
-  options.find_readout = false;
-  resected = resect_receiver(given, readings, track, options);
-  if (resected && find_fault(resected->receiver)) return std::nullopt;
-  return resected;
+// A receiver that can be, and explains its readings about as well as the given one at least.
+bool is_credible(const ResectedReceiver& resected, const ReceiverResiduals& before) {
+  constexpr double kWorse = 1.5;  // outliers weigh differently; a lost search is off by hundreds of pixels
+  if (find_fault(resected.receiver)) return false;
+  return !before.median_px || resected.median_px < kWorse * *before.median_px;
+}
+
+// Short flights tell too little for the search, a rolling shutter or a rate: first the search is left out, then these.
+std::optional<ResectedReceiver> credible_resection(const CalibratedReceiver& one, const Readings& readings,
+                                                   const KnownTrack& track, const ResectionOptions& options) {
+  for (const bool keep_pose : {options.keep_pose, true}) {
+    ResectionOptions attempt = options;
+    attempt.keep_pose = keep_pose;
+    for (bool* found : {static_cast<bool*>(nullptr), &attempt.find_readout, &attempt.find_rate}) {
+      if (found) *found = false;
+      auto resected = resect_receiver(one.given, readings, track, attempt);
+      if (resected && is_credible(*resected, one.before)) return resected;
+    }
+  }
+  return std::nullopt;
 }
 
 void resect(CalibratedReceiver& one, const Readings& readings, const KnownTrack& track,
             const ResectionOptions& options) {
   one.before = residuals_about(lookup(track), one.given, readings);
-  const auto resected = possible_resection(one.given, readings, track, fitted_to(readings, options));
+  const auto resected = credible_resection(one, readings, track, fitted_to(readings, options));
   if (!resected) {
     one.left_why = one.before.readings < options.least_readings
                        ? fmt::format("{} of its readings lie on the path, wanted are {}", one.before.readings,
                                      options.least_readings)
-                       : "no pose and clock explain its readings";
+                       : "no pose and clock explain its readings, or they tell too little of them";
     one.after = one.before;
     return;
   }
@@ -110,12 +121,15 @@ void resect_all(const ReceiverCalibrationInput& input, const ReceiverCalibration
     if (watch.progress) watch.progress({"resecting (cameras)", done++, total, ""});
     if (watch.stop.stop_requested()) {
       one.left_why = "interrupted";
+      run.is_interrupted = true;
     } else {
       resect(one, readings_of(input, one.given.id), track, choice.resection);
     }
   }
   run.path = part_seen(input, run);
-  if (watch.stop.stop_requested() || !run.has_answer()) return;
+  if (!run.has_answer()) return;
+  run.is_interrupted = watch.stop.stop_requested();
+  if (run.is_interrupted) return;
   warn_of_short_flights(input, choice.resection, run);
   if (watch.progress) watch.progress({"looking for faults (cameras)", 0, total, ""});
   ReceiverCheckOptions checks = choice.checks;
@@ -160,14 +174,15 @@ void bundle_all(const ReceiverCalibrationInput& input, const ReceiverCalibration
   SplineBundleOptions options = choice.bundle;
   options.time_receiver = time_receiver_of(cameras, input, choice.time_receiver);
   if (watch.progress) watch.progress({"finding path and cameras together", 0, 0, ""});
-  const auto bundle = watch.stop.stop_requested() ? std::nullopt : bundle_flight(cameras, input.readings, options);
+  run.is_interrupted = watch.stop.stop_requested();
+  const auto bundle = run.is_interrupted ? std::nullopt : bundle_flight(cameras, input.readings, options);
   for (CalibratedReceiver& one : run.receivers) {
     if (!one.given.camera) continue;
     const Readings readings = readings_of(input, one.given.id);
     if (!bundle || readings.empty()) {
-      one.left_why = watch.stop.stop_requested() ? "interrupted"
-                     : readings.empty()          ? "it saw nothing"
-                                                 : "its lines of sight meet no other camera's";
+      one.left_why = run.is_interrupted ? "interrupted"
+                     : readings.empty() ? "it saw nothing"
+                                        : "its lines of sight meet no other camera's";
       continue;
     }
     one.found = *find_by_id(std::span<const Receiver>(bundle->receivers), one.given.id);
@@ -223,7 +238,6 @@ ReceiverCalibrationRun calibrate_receivers(const ReceiverCalibrationInput& input
     bundle_all(input, choice, watch, run);
   }
   run.calibration_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  run.is_interrupted = watch.stop.stop_requested();
   return run;
 }
 

@@ -33,7 +33,7 @@ struct ReceiverCalibrationRun {
   std::vector<CalibratedReceiver> receivers;  ///< all, in the order given
   std::vector<ReceiverFinding> findings;      ///< with a known path
   std::vector<TimedPosition> path;            ///< known, or found; while somebody saw it
-  bool is_interrupted = false;
+  bool is_interrupted = false;                ///< and something is missing
   double calibration_s = 0.0;
   std::vector<std::string> warnings;
 

@@ -122,9 +122,10 @@ std::string explain_no_answer(const ReceiverCalibrationRun& run) {
   for (const CalibratedReceiver& one : run.receivers) {
     if (one.given.camera) reasons.push_back(fmt::format("{}: {}", name_of(one.given), one.left_why));
   }
-  return fmt::format("no camera can be calibrated ({}); {}", fmt::join(reasons, "; "),
-                     run.has_truth() ? "check that path and observations are of one flight and count time by one clock"
-                                     : "check poses and clocks, or give the target's path by --truth");
+  return fmt::format(
+      "no camera can be calibrated ({}); {}", fmt::join(reasons, "; "),
+      run.has_truth() ? "check that path and observations are of one flight, not too short, and count time by one clock"
+                      : "check poses and clocks, or give the target's path by --truth");
 }
 
 nlohmann::json summary_of(const ReceiverCalibrationRun& run) {

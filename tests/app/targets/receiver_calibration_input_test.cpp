@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/targets/receiver_calibration_input.h"
 
+#include <filesystem>
+
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -56,6 +58,8 @@ TEST_F(ReceiverCalibrationFiles, AreReadAsOne) {
 
 TEST_F(ReceiverCalibrationFiles, MayLieInOneFolder) {
   ReceiverCalibrationSources folder = sources();
+  std::filesystem::rename(folder.truth, directory_ / "truth.csv");
+  folder.truth = directory_.path();
   folder.receivers = directory_.path();
   folder.observations.clear();
   EXPECT_EQ(read_calibration_input(folder).readings.size(), test::disturbed_flight().readings.size());

@@ -56,7 +56,23 @@ TEST(ReceiverCalibration, ResectsADisturbedCameraOnAKnownPath) {
 
 TEST(ReceiverCalibration, FindsNoReceiverThatIsImpossible) {
   const auto run = calibrate_receivers(test::disturbed_flight(), {}, {});
-  for (const CalibratedReceiver& one : run.receivers) EXPECT_FALSE(find_fault(one.found)) << *find_fault(one.found);
+  for (const CalibratedReceiver& one : run.receivers) {
+    EXPECT_TRUE(one.is_calibrated());
+    EXPECT_FALSE(find_fault(one.found)) << *find_fault(one.found);
+  }
+}
+
+TEST(ReceiverCalibration, StaysNearTheGivenReceiversWhereAShortFlightTellsLittle) {
+  ReceiverCalibrationInput input = test::disturbed_flight();
+  std::erase_if(input.readings, [&](const ReceiverReading& reading) {
+    const auto& clock = input.receivers[static_cast<std::size_t>(reading.receiver)].clock;
+    return common_time(clock, reading.time) > Timestamp(from_seconds(7.0));
+  });
+  const auto run = calibrate_receivers(input, {}, {});
+  for (const CalibratedReceiver& one : run.receivers) {
+    ASSERT_TRUE(one.after.median_px);
+    EXPECT_LT(*one.after.median_px, 1.5 * *one.before.median_px);
+  }
 }
 
 TEST(ReceiverCalibration, FindsThePathWhereItIsNotKnown) {

@@ -89,7 +89,7 @@ TEST(ReceiverCalibrationSummary, SaysWhyThereIsNoAnswer) {
   EXPECT_FALSE(run.has_answer());
   EXPECT_EQ(explain_no_answer(run),
             "no camera can be calibrated (receiver 1: 7 of its readings lie on the path, wanted are 100); check that "
-            "path and observations are of one flight and count time by one clock");
+            "path and observations are of one flight, not too short, and count time by one clock");
 }
 
 TEST(ReceiverCalibrationSummary, TellsALineOfEach) {
