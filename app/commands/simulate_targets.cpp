@@ -13,6 +13,13 @@
 namespace alidade {
 namespace {
 
+// Simulated receivers stand where they are said to, and say so: else those who read them would allow for errors.
+std::vector<Receiver> as_exact(std::vector<Receiver> receivers) {
+  constexpr double kVariance = 1e-12;  // a micrometre, a microradian
+  for (Receiver& receiver : receivers) receiver.pose_covariance = kVariance * Matrix6d::Identity();
+  return receivers;
+}
+
 class SimulateTargetsCommand : public Command {
  public:
   explicit SimulateTargetsCommand(CLI::App&) { bind(options_, simulation_); }
@@ -55,7 +62,7 @@ class SimulateTargetsCommand : public Command {
 
   void finish(const RunContext& context, ResultDirectory& directory, const std::vector<Receiver>& receivers,
               const std::vector<TargetRow>& truth, Report report, const nlohmann::json& summary) const {
-    write_receivers(directory.path("receivers.yaml"), receivers);
+    write_receivers(directory.path("receivers.yaml"), as_exact(receivers));
     TargetFileWriter rows(directory.path("truth.csv"));
     for (const TargetRow& row : truth) rows.write(row);
     rows.commit();

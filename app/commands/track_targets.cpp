@@ -58,7 +58,7 @@ class TrackTargetsCommand : public Command {
     const ReadingSink found = [&](const ReceiverReading& reading) { found_readings->write(reading); };
     const auto sky = found_readings ? open_videos(sources, receivers, found, context.stop)
                                     : open_table(sources, receivers, context.stop);
-    const TargetTrackOptions track = settled(track_, sky->frame_interval_s());
+    const TargetTrackOptions track = settled(track_, sky->frame_interval_s(), receivers);
     TargetRecord record(directory, receivers);
     const auto begin = std::chrono::steady_clock::now();
     std::optional<CueFileWriter> cues;

@@ -2,6 +2,7 @@
 #include "app/targets/target_pipeline.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -22,6 +23,20 @@ PaperOptions paper_options(const TargetTrackOptions& options) {
 std::string to_string(TargetStatus status) {
   if (status == TargetStatus::Tentative) return "tentative";
   return status == TargetStatus::Confirmed ? "confirmed" : "coasting";
+}
+
+// How far the receivers' directions are off by their poses: root mean square of a coordinate.
+double pose_sigma_rad(std::span<const Receiver> receivers) {
+  constexpr double kUnknownPose_rad = 0.003;
+  double squares = 0.0;
+  for (const Receiver& receiver : receivers) {
+    if (receiver.pose_covariance) {
+      squares += receiver.pose_covariance->bottomRightCorner<3, 3>().trace() / 3.0;
+    } else if (receiver.camera) {
+      squares += kUnknownPose_rad * kUnknownPose_rad;
+    }
+  }
+  return receivers.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(receivers.size()));
 }
 
 TargetRow row_of(const TargetState& state) {
@@ -65,9 +80,14 @@ void bind(OptionFields& fields, TargetTrackOptions& options) {
   fields.add_choice("association", ours.association,
                     {{"nearest-neighbour", ScanAssociation::NearestNeighbour}, {"joint", ScanAssociation::Joint}},
                     "bearings to targets: the most probable way (global), or all by their probability (JPDA)");
-  fields.add("acceleration_density", ours.filter.motion.acceleration_density, "m2/s3",
-             "how targets leave the straight path: 0.1 in steady flight, 10 for a drone that manoeuvres");
-  fields.add("added_sigma_rad", ours.filter.added_sigma_rad, "rad", "what bearings err by beside their own noise");
+  fields.add(
+      "acceleration_density", options.acceleration_density, "m2/s3",
+      "how targets leave the straight path: 0.1 in steady flight, 10 for a drone that manoeuvres; below 0: 10 of "
+      "cameras, else 0.1");
+  fields.add(
+      "added_sigma_rad", options.added_sigma_rad, "rad",
+      "what bearings err by beside their own noise; below 0: by the receivers' pose covariances, 0.003 of cameras "
+      "without one");
   fields.add("detection_probability", ours.detection_probability, "", "of a target in a look");
   fields.add("false_bearings_per_sr", ours.false_bearings_per_sr, "1/sr", "their mean number in a look");
   fields.add("gate_chi2", ours.gate_chi2, "", "how far off a bearing of a target may be");
@@ -93,13 +113,19 @@ void bind(OptionFields& fields, TargetTrackOptions& options) {
   fields.add_check([&options] { validate(options); });
 }
 
-TargetTrackOptions settled(TargetTrackOptions options, std::optional<double> frame_interval_s) {
+TargetTrackOptions settled(TargetTrackOptions options, std::optional<double> frame_interval_s,
+                           std::span<const Receiver> receivers) {
+  constexpr double kSteady = 0.1, kDrone = 10.0;
   constexpr double kDirectionFinder_s = 1.0, kDirectionFinderScan_s = 0.03, kShareOfFrame = 0.4;
   TargetTrackerOptions& ours = options.ours;
   const double frame_s = frame_interval_s.value_or(kDirectionFinder_s);
   if (options.period_s == 0.0) options.period_s = frame_s;
   if (options.scan_s == 0.0) options.scan_s = frame_interval_s ? kShareOfFrame * frame_s : kDirectionFinderScan_s;
   if (options.output_s == 0.0) options.output_s = std::max(0.2, options.period_s);
+  if (options.acceleration_density < 0.0) options.acceleration_density = frame_interval_s ? kDrone : kSteady;
+  if (options.added_sigma_rad < 0.0) options.added_sigma_rad = pose_sigma_rad(receivers);
+  ours.filter.motion.acceleration_density = options.acceleration_density;
+  ours.filter.added_sigma_rad = options.added_sigma_rad;
   ours.period_s = options.period_s;
   ours.scan_s = options.scan_s;
   if (frame_interval_s) {

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -27,7 +28,13 @@ struct TargetTrackOptions {
   TargetMethod method = TargetMethod::Ours;
   double output_s = 0.0;  ///< from one estimate to the next; 0: a period, 0.2 s at least
   double period_s = 0.0;  ///< TargetTrackerOptions::period_s; 0: a frame of the slowest camera, else 1 s
-  double scan_s = 0.0;    ///< TargetTrackerOptions::scan_s; 0: 0.4 of a camera's frame, else 0.03 s
+  /// TargetMotion::acceleration_density; below 0: 10 of cameras, whose frames show every manoeuvre of a drone, else
+  /// 0.1.
+  double acceleration_density = -1.0;
+  /// BearingFilterOptions::added_sigma_rad; below 0: as the receivers' pose covariances say, and 3 mrad of cameras
+  /// without one, as consumer cameras on tripods are off by.
+  double added_sigma_rad = -1.0;
+  double scan_s = 0.0;  ///< TargetTrackerOptions::scan_s; 0: 0.4 of a camera's frame, else 0.03 s
   TargetTrackerOptions ours;
   FlightPathOptions flight;
   PaperOptions paper;
@@ -42,7 +49,8 @@ void bind(OptionFields& fields, TargetTrackOptions& options);
 
 /// The options with nothing left open. Of cameras, whose frames come fast, new tracks take 9 sightings out of 10 frames
 /// at least, and are given up after 20 frames at the earliest.
-TargetTrackOptions settled(TargetTrackOptions options, std::optional<double> frame_interval_s);
+TargetTrackOptions settled(TargetTrackOptions options, std::optional<double> frame_interval_s,
+                           std::span<const Receiver> receivers = {});
 
 /// One line of words for the report: how targets are found.
 std::string describe(const TargetTrackOptions& options);

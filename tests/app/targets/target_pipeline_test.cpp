@@ -69,6 +69,19 @@ TEST(SettledOptions, ArePeriodsOfDirectionFindersOrFramesOfCameras) {
   EXPECT_EQ(cameras.ours.least_sightings, 9);
   EXPECT_EQ(cameras.ours.window_periods, 10.0);
   EXPECT_EQ(cameras.ours.patience_periods, 20.0);
+  EXPECT_EQ(finders.ours.filter.motion.acceleration_density, 0.1);
+  EXPECT_EQ(cameras.ours.filter.motion.acceleration_density, 10.0);
+}
+
+TEST(SettledOptions, TakeWhatPosesErrByFromTheirCovariances) {
+  std::vector<Receiver> receivers(2);
+  EXPECT_EQ(settled({}, std::nullopt, receivers).ours.filter.added_sigma_rad, 0.0);
+  receivers[0].camera = Camera{640, 480, 500, 500, 320, 240, {}};
+  receivers[1].pose_covariance = 16e-6 * Matrix6d::Identity();
+  EXPECT_NEAR(settled({}, std::nullopt, receivers).ours.filter.added_sigma_rad, std::sqrt((9e-6 + 16e-6) / 2), 1e-12);
+  TargetTrackOptions options;
+  options.added_sigma_rad = 0.0;
+  EXPECT_EQ(settled(options, std::nullopt, receivers).ours.filter.added_sigma_rad, 0.0);
 }
 
 TEST(SettledOptions, KeepWhatTheUserHasSaid) {
