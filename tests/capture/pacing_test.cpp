@@ -35,10 +35,9 @@ TEST(InRealTime, GivesNoFrameEarlierThanItCame) {
   EXPECT_EQ(source->frame_count(), 5);
   EXPECT_EQ(source->describe(), "ticks");
   EXPECT_EQ(source->fault(), "worn");
-  HostTime start{};
+  const HostTime start = HostClock::now();
   int count = 0;
   for (; const auto frame = source->next(); ++count) {
-    if (count == 0) start = HostClock::now();
     EXPECT_EQ(frame->index, count);
     EXPECT_GE(HostClock::now() - start, milliseconds(30) * count - milliseconds(1));
   }

@@ -304,7 +304,7 @@ class BadTargets(Targets):
         self.refuses(["two.yaml", self.inputs[1], "--method", "paper-proposed"],
                      "two.yaml: holds 2 receivers, wanted are 3; ")
         self.write("twice.yaml", text.replace("id: 1", "id: 0"))
-        self.refuses(["twice.yaml", self.inputs[1]], "twice.yaml:11: two receivers have the id 0; give each its own")
+        self.refuses(["twice.yaml", self.inputs[1]], "twice.yaml:12: two receivers have the id 0; give each its own")
         self.refuses(["nowhere.yaml", self.inputs[1]], "nowhere.yaml: cannot be opened: No such file or directory")
 
     def test_observations_that_cannot_be(self):
