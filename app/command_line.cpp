@@ -68,7 +68,7 @@ InputError explain(const CLI::App& app, const CLI::ParseError& error) {
 }  // namespace
 
 CommandLine::CommandLine(const std::vector<Verb>& verbs)
-    : app_("Alidade turns lines of sight into motion: camera trajectories from images.", "alidade") {
+    : app_("Alidade turns lines of sight into motion: of cameras, rigid bodies and flying objects.", "alidade") {
   app_.require_subcommand(1);
   app_.set_version_flag("--version", std::string("alidade ") + kVersion);
   app_.footer("Each verb explains itself: alidade VERB --help");
