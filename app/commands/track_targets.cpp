@@ -82,14 +82,9 @@ class TrackTargetsCommand : public Command {
     if (live) live->end(end_message({run.bearings, static_cast<std::int64_t>(run.targets.size()), run.interrupted}));
     const std::vector<Receiver>& operated = pipeline.receivers_in_operation();
     write_receivers(directory.path("receivers.yaml"), operated.empty() ? receivers : operated);
-    write_target_report(run, truth, directory, context.arguments, options_.to_yaml());
-    for (const std::string& warning : run.warnings) context.warn(warning);
-    const nlohmann::json summary = summary_of(run);
-    directory.commit(summary);
-    tell(context, run, summary);
+    conclude(context, run, truth, directory);
     if (fault) throw *fault;
-    if (run.interrupted) return ExitCode::Interrupted;
-    return answer(context, run);
+    return run.interrupted ? ExitCode::Interrupted : answer(context, run);
   }
 
  private:
@@ -176,6 +171,15 @@ class TrackTargetsCommand : public Command {
       run.warnings.push_back(fmt::format("{} bearings came more than {} s late and were left out; see --lag-s",
                                          pipeline.left_out(), track_.ours.lag_s));
     }
+  }
+
+  void conclude(const RunContext& context, TargetRun& run, std::span<const TargetRow> truth,
+                ResultDirectory& directory) const {
+    write_target_report(run, truth, directory, context.arguments, options_.to_yaml());
+    for (const std::string& warning : run.warnings) context.warn(warning);
+    const nlohmann::json summary = summary_of(run);
+    directory.commit(summary);
+    tell(context, run, summary);
   }
 
   void tell(const RunContext& context, const TargetRun& run, const nlohmann::json& summary) const {

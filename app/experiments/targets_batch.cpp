@@ -145,9 +145,8 @@ ExperimentSection targets_batch(const ExperimentContext& context) {
   ExperimentSection section{
       "batch",
       "The stamped batch against its bound",
-      {"One target, five periods, delays .1/.2 unless said; position at the time of the last bearing. Accelerating: "
-       "each "
-       "coordinate of a constant acceleration N(0, 3 m/s²), fitted with it.",
+      {"One target, five periods, delays .1/.2 unless said; position at the time of the last bearing. "
+       "Accelerating: each coordinate of a constant acceleration N(0, 3 m/s²), fitted with it.",
        "RMS ÷ bound (Cramér-Rao): 95 % interval by bootstrap over runs. NEES per degree of freedom, of all unknowns, "
        "beside the 95 % bounds of an honest covariance; chi2 per degree of the bearings' errors."},
       {},

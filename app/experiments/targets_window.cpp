@@ -157,9 +157,8 @@ ExperimentSection targets_window(const ExperimentContext& context) {
       "Many targets told apart in a window",
       {"m 5, three receivers, five periods, delays .1/.2, Pd 0.9, one false bearing per scan and receiver in a cone of "
        "20 degrees; each cell changes what it names. Targets lie within 15 m, at least 3 m apart, and fly together.",
-       "Pr_m: all m found, within 4.2 m in period 5. The oracle is told which bearings are of which target, and need "
-       "not "
-       "prove that there is one. P(number): as many found as there are. d: distance in m.",
+       "Pr_m: all m found, within 4.2 m in period 5. The oracle is told which bearings are of which target, and "
+       "need not prove that there is one. P(number): as many found as there are. d: distance in m.",
        "CPU time of one window, one thread."},
       {},
       {},
