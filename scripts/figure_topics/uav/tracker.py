@@ -56,8 +56,8 @@ def measure_tracker(bench):
 def standard_figures(name):
     return [Figure(f"tracker/{name}/rms-to-true-association", at_most=1.1, goal=1.05),
             Figure(f"tracker/{name}/switches", "per run", at_most=0.02),
-            *(Figure(f"tracker/{name}/{event}-99", "periods", at_most=3) for event in ("found", "given-up")),
-            *(Figure(f"tracker/{name}/{event}-worst", "periods") for event in ("found", "given-up")),
+            *(Figure(f"tracker/{name}/{event}-{share}", "periods", at_most=3)
+              for event in ("found", "given-up") for share in ("99", "worst")),
             Figure(f"tracker/{name}/false-ids", "per run"),
             Figure(f"tracker/{name}/gospa", "m"),
             Figure(f"tracker/{name}/ospa", "m"),
