@@ -6,6 +6,7 @@
 
 #include "app/thinned.h"
 #include "calib/receivers/receiver_parameters.h"
+#include "core/median.h"
 
 namespace alidade {
 
@@ -27,9 +28,8 @@ ReceiverResiduals residuals_about(const PathLookup& path, const Receiver& receiv
   result.readings = static_cast<std::int64_t>(lengths.size());
   result.samples = samples.values();
   if (lengths.empty()) return result;
-  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-  std::nth_element(lengths.begin(), middle, lengths.end());
-  if (*middle < std::numeric_limits<double>::infinity()) result.median_px = *middle;
+  const double middle_px = median(std::move(lengths));
+  if (middle_px < std::numeric_limits<double>::infinity()) result.median_px = middle_px;
   return result;
 }
 

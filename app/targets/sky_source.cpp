@@ -9,6 +9,7 @@
 
 #include "core/errors.h"
 #include "core/find_by_id.h"
+#include "core/median.h"
 #include "datasets/flight_recording.h"
 #include "io/receiver_file.h"
 #include "io/receiver_reading_file.h"
@@ -33,10 +34,7 @@ std::optional<double> longest_interval_s(std::span<const Receiver> receivers,
     own.erase(std::unique(own.begin(), own.end()), own.end());
     std::vector<double> steps;
     for (std::size_t i = 1; i < own.size(); ++i) steps.push_back(to_seconds(own[i] - own[i - 1]));
-    if (steps.empty()) continue;
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    longest = std::max(longest, *middle);
+    if (!steps.empty()) longest = std::max(longest, median(std::move(steps)));
   }
   if (longest <= 0.0) return std::nullopt;
   return longest;

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/median.h"
 #include "geometry/positions.h"
 
 namespace alidade {
@@ -36,10 +37,7 @@ Duration usual_step(std::span<const TargetRow> rows) {
       if (path[i].time > path[i - 1].time) steps.push_back(path[i].time - path[i - 1].time);
     }
   }
-  if (steps.empty()) return from_seconds(kLongestGap_s);
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return steps.empty() ? from_seconds(kLongestGap_s) : median(std::move(steps));
 }
 
 IdentifiedPosition moved_to(const TargetRow& row, Timestamp time) {

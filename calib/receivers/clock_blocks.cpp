@@ -8,6 +8,8 @@
 
 #include <Eigen/LU>
 
+#include "core/median.h"
+
 namespace alidade {
 namespace {
 
@@ -31,9 +33,7 @@ std::optional<ClockBlock> block_of(const std::vector<Lag>& lags, double effectiv
       return lag.residual_px + lag.per_s * x[0] + x.tail<2>();
     };
     for (const Lag& lag : lags) off2.push_back(left(lag).squaredNorm());
-    const auto middle = off2.begin() + static_cast<std::ptrdiff_t>(off2.size() / 2);
-    std::nth_element(off2.begin(), middle, off2.end());
-    scatter2 = std::max(1e-4, *middle / (1.17741 * 1.17741));  // of a coordinate
+    scatter2 = std::max(1e-4, median(std::move(off2)) / (1.17741 * 1.17741));  // of a coordinate
     H.setZero();
     Eigen::Vector3d g = Eigen::Vector3d::Zero();
     for (const Lag& lag : lags) {

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 #include <glog/logging.h>
 
+#include "core/median.h"
 #include "reconstruction/resection.h"
 
 namespace alidade {
@@ -29,13 +30,6 @@ std::optional<SightResidual> residual_on_track(const Receiver& receiver, const R
   return sight_residual(receiver, change, reading, *point);
 }
 
-double median_of(std::vector<double> values) {
-  if (values.empty()) return std::numeric_limits<double>::infinity();
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // Of the residuals' lengths; infinite where half of the readings or more see nothing.
 double median_px(const Receiver& receiver, const Readings& readings, const KnownTrack& track) {
   std::vector<double> lengths;
@@ -43,7 +37,7 @@ double median_px(const Receiver& receiver, const Readings& readings, const Known
     const auto r = residual_on_track(receiver, ReceiverChange::Zero(), reading, track);
     lengths.push_back(r ? r->residual_px.norm() : std::numeric_limits<double>::infinity());
   }
-  return median_of(std::move(lengths));
+  return lengths.empty() ? std::numeric_limits<double>::infinity() : median(std::move(lengths));
 }
 
 std::optional<Receiver> posed_at(Receiver receiver, double later_s, const Readings& some, const KnownTrack& track) {

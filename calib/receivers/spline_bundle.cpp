@@ -12,6 +12,7 @@
 #include <glog/logging.h>
 
 #include "camera/static_triangulation.h"
+#include "core/median.h"
 
 namespace alidade {
 namespace {
@@ -158,11 +159,8 @@ std::vector<double> scatters(std::span<const Receiver> receivers, const std::vec
   std::vector<double> sigmas;
   for (std::size_t k = 0; k < receivers.size(); ++k) {
     double sigma = receivers[k].sigma;
-    if (!lengths[k].empty()) {
-      const auto middle = lengths[k].begin() + static_cast<std::ptrdiff_t>(lengths[k].size() / 2);
-      std::nth_element(lengths[k].begin(), middle, lengths[k].end());
-      sigma = std::max(sigma, kMedianToSigma * *middle);  // the path can follow one receiver closer than it sees
-    }
+    // The path can follow one receiver closer than it sees.
+    if (!lengths[k].empty()) sigma = std::max(sigma, kMedianToSigma * median(lengths[k]));
     sigmas.push_back(sigma);
   }
   return sigmas;

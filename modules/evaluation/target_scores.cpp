@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/median.h"
+
 namespace alidade {
 namespace {
 
@@ -12,13 +14,6 @@ std::vector<Eigen::Vector3d> places_of(std::span<const IdentifiedPosition> list)
   std::vector<Eigen::Vector3d> places;
   for (const IdentifiedPosition& item : list) places.push_back(item.p_world);
   return places;
-}
-
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // Sums over the moments.
@@ -66,8 +61,10 @@ TargetScores score_targets(std::span<const TargetMoment> moments, double cutoff_
     *mean /= count;
   }
   scores.pairs = sums.distances_m.size();
-  if (scores.pairs > 0) scores.rms_m = std::sqrt(sums.squares_m2 / static_cast<double>(scores.pairs));
-  scores.median_m = median_of(std::move(sums.distances_m));
+  if (scores.pairs > 0) {
+    scores.rms_m = std::sqrt(sums.squares_m2 / static_cast<double>(scores.pairs));
+    scores.median_m = median(std::move(sums.distances_m));
+  }
   scores.nees = sums.nees.result();
   return scores;
 }

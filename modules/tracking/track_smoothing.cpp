@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 
+#include "core/median.h"
 #include "estimation/state_smoother.h"
 #include "tracking/recording_noise.h"
 
@@ -41,12 +42,6 @@ struct Recording {
   double v = 0.0, omega = 0.0;  // median pace, m/s and rad/s
   double dt = 0.0;              // median
 };
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 Recording recording_of(Reports segment) {
   Recording recording;

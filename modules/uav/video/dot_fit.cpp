@@ -10,6 +10,8 @@
 #include <Eigen/Cholesky>
 #include <fmt/format.h>
 
+#include "core/median.h"
+
 namespace alidade {
 namespace {
 
@@ -59,12 +61,9 @@ double ring_noise(const cv::Mat& residual, const cv::Rect& inner, const cv::Poin
     }
   }
   if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  const double median = *middle;
-  for (double& value : values) value = std::abs(value - median);
-  std::nth_element(values.begin(), middle, values.end());
-  return 1.4826 * *middle;
+  const double level = median(values);
+  for (double& value : values) value = std::abs(value - level);
+  return 1.4826 * median(std::move(values));
 }
 
 // The least squares by damped Gauss-Newton steps, and how well they fit.

@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
+#include "core/median.h"
+
 namespace alidade {
 namespace {
 
@@ -65,12 +67,6 @@ int count_agreeing(const std::vector<Move>& moves, const Vector3d& sway, double 
   int count = 0;
   for (const Move& move : moves) count += (move.from + move.by - moved(move.from, sway)).norm() < inlier_px;
   return count;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 Vector3d median_shift(const std::vector<Move>& moves) {
